@@ -1,0 +1,106 @@
+"""First-order joint dynamics `τ θ' + κ θ = K u` of the paper's device, stepped exactly, held inside its limits.
+
+The paper names "first-order joint dynamics" only; K, τ and κ are a choice (see the defaults of `JointModel`).
+Nothing here knows ROS or reads a clock: a step takes an effort and a duration.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from touch_sim.joint_limits import JointLimits
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class JointModel:
+    """The constants of `τ θ' + κ θ = K u`; each a number for all joints or one per joint, shape (dof,).
+
+    gain           K in rad/(N·m), positive
+    time_constant  τ in s, positive
+    stiffness      κ, no unit, not negative; 0 is a viscous axis that integrates (a damper of τ/K N·m·s/rad)
+    effort_limit   largest effort taken, N·m, positive; a larger one is cut to it
+    """
+
+    gain: ArrayLike = 1.0
+    time_constant: ArrayLike = 0.05
+    stiffness: ArrayLike = 0.0
+    effort_limit: ArrayLike = 1.0
+
+    def __post_init__(self) -> None:
+        for name in ("gain", "time_constant", "effort_limit"):
+            values = np.asarray(getattr(self, name), dtype=float)
+            if not (np.isfinite(values) & (values > 0.0)).all():
+                raise ValueError(f"{name} must be positive and finite, not {getattr(self, name)}")
+        stiffness = np.asarray(self.stiffness, dtype=float)
+        if not (np.isfinite(stiffness) & (stiffness >= 0.0)).all():
+            raise ValueError(f"stiffness must be zero or positive and finite, not {self.stiffness}")
+
+
+def hold_factor(stiffness: Array, time_constant: Array, dt: float) -> Array:
+    """Return the factor f of the exact step `θ + f θ'(0)` under a constant effort, in s.
+
+    The axis decays with the rate κ/τ, so f = (1 - exp(-κ dt/τ)) τ/κ, which tends to dt as κ tends to 0.
+    """
+    decay = stiffness * dt / time_constant
+    # expm1 keeps every digit where the decay is small; exactly zero has the limit 1.
+    ratio = np.divide(-np.expm1(-decay), decay, out=np.ones_like(decay), where=decay > 0.0)
+    return np.asarray(dt * ratio)
+
+
+class JointDynamics:
+    """The joints of one device: their angles, their velocity, and the step under an effort.
+
+    `angles` (dof,) rad and `velocity` (dof,) rad/s hold after the last step; both are replaced by a step, never
+    changed in place, so that a caller may keep them.
+    """
+
+    def __init__(self, model: JointModel, limits: JointLimits, angles: ArrayLike) -> None:
+        shape = limits.lower.shape
+        self.limits = limits
+        self.gain, self.time_constant, self.stiffness, self.effort_limit = (
+            np.broadcast_to(np.asarray(value, dtype=float), shape).copy()
+            for value in (model.gain, model.time_constant, model.stiffness, model.effort_limit)
+        )
+        self.mobility = self.gain / self.time_constant
+        self._hold_dt = -1.0
+        self._hold = np.zeros(shape)
+        self.reset(angles)
+
+    def reset(self, angles: ArrayLike) -> None:
+        """Put the joints to `angles` (dof,) rad, at rest. Raise ValueError where these break a limit."""
+        angles = np.array(angles, dtype=float)
+        self.limits.check(angles)
+        self.angles: Array = angles
+        self.velocity: Array = np.zeros_like(angles)
+
+    def step(self, effort: ArrayLike, dt: float) -> None:
+        """Advance by `dt` s under the constant `effort` (dof,) N·m: the exact zero-order hold.
+
+        Each joint moves monotonically during a step, so that stopping at a limit is exact as well. Raise
+        ValueError, with nothing changed, for an effort that is not finite or a negative dt.
+        """
+        effort = np.asarray(effort, dtype=float)
+        if effort.shape != self.angles.shape or not np.isfinite(effort).all():
+            raise ValueError(f"effort must be {self.angles.size} finite numbers, not {effort}")
+        if not 0.0 <= dt < np.inf:
+            raise ValueError(f"dt must be zero or positive, not {dt}")
+        if dt != self._hold_dt:
+            self._hold, self._hold_dt = hold_factor(self.stiffness, self.time_constant, dt), dt
+        effort = np.minimum(np.maximum(effort, -self.effort_limit), self.effort_limit)
+
+        free = self.angles + self._hold * self._free_velocity(self.angles, effort)
+        angles = self.limits.hold(self.angles, free, self.mobility)
+        velocity = self._free_velocity(angles, effort)
+        if (angles != free).any() and dt > 0.0:
+            # On a limit: what the limit lets through of the velocity.
+            velocity = (self.limits.hold(angles, angles + velocity * dt, self.mobility) - angles) / dt
+        self.angles, self.velocity = angles, velocity
+
+    def _free_velocity(self, angles: Array, effort: Array) -> Array:
+        """Return θ' = (K u - κ θ)/τ in rad/s."""
+        return (self.gain * effort - self.stiffness * angles) / self.time_constant
