@@ -1,0 +1,88 @@
+"""Between messages and arrays. A JointState is read by name, never by position in the array.
+
+With rclpy's field checks off (its default) a numpy scalar or an int in a message field is sent as garbage
+without a word; so every value is made a Python float here.
+"""
+
+from __future__ import annotations
+
+from array import array
+from collections.abc import Sequence
+
+import numpy as np
+from builtin_interfaces.msg import Time
+from geometry_msgs.msg import Point
+from numpy.typing import ArrayLike, NDArray
+from rclpy.clock import Clock
+from sensor_msgs.msg import JointState
+
+Array = NDArray[np.float64]
+
+
+class JointMessageError(ValueError):
+    """A JointState does not hold what is wanted of it; the message says what is wrong."""
+
+
+def point_to_array(point: Point) -> Array:
+    """The point as (3,), m."""
+    return np.array((point.x, point.y, point.z), dtype=np.float64)
+
+
+def array_to_point(values: ArrayLike) -> Point:
+    """A Point from (3,), m."""
+    x, y, z = values
+    return Point(x=float(x), y=float(y), z=float(z))
+
+
+def joint_values(message: JointState, names: Sequence[str], field: str = "position") -> Array:
+    """The values of `field` (position, velocity or effort) for `names`, in their order: (len(names),).
+
+    Joints that are not asked for are passed over. Raises JointMessageError where a name is missing or stands
+    twice, where the field has another length than the names, and where a value is not finite.
+    """
+    held = getattr(message, field)
+    if len(held) != len(message.name):
+        raise JointMessageError(f"{len(message.name)} joint names but {len(held)} values in {field}")
+    values = np.array(held, dtype=np.float64)
+    if message.name != list(names):
+        values = values[_indices(message.name, names)]
+    if not np.isfinite(values).all():
+        bad = names[int(np.flatnonzero(~np.isfinite(values))[0])]
+        raise JointMessageError(f"{field} of {bad} is not finite")
+    return values
+
+
+def _indices(present: Sequence[str], wanted: Sequence[str]) -> list[int]:
+    for name in wanted:
+        count = present.count(name)
+        if count != 1:
+            found = "is missing" if count == 0 else f"stands there {count} times"
+            raise JointMessageError(f"joint {name} {found}; the message has: {', '.join(present) or 'none'}")
+    return [present.index(name) for name in wanted]
+
+
+def joint_state(
+    names: Sequence[str],
+    position: ArrayLike | None = None,
+    velocity: ArrayLike | None = None,
+    effort: ArrayLike | None = None,
+    stamp: Time | None = None,
+) -> JointState:
+    """A JointState; each field given has one value for each of `names` (rad, rad/s, N·m)."""
+    message = JointState(name=list(names))
+    for field, values in (("position", position), ("velocity", velocity), ("effort", effort)):
+        if values is not None:
+            fill(message, field, values)
+    if stamp is not None:
+        message.header.stamp = stamp
+    return message
+
+
+def fill(message: JointState, field: str, values: ArrayLike) -> None:
+    """Put `values` into `field` of a message that is used again and again; cheaper than a new message."""
+    setattr(message, field, array("d", np.asarray(values, dtype=np.float64).tolist()))
+
+
+def stamp_now(stamp: Time, clock: Clock) -> None:
+    """Set `stamp` to the clock's time, without making a new one."""
+    stamp.sec, stamp.nanosec = clock.now().seconds_nanoseconds()

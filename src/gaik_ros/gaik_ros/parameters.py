@@ -1,0 +1,246 @@
+"""Parameters of a node, declared in one table: type, default, unit, description and range of each.
+
+rclpy's own declarations refuse an integer for a float, and take each parameter of a change by itself. Here an
+integer is taken, and a change is checked as a whole: it comes into force whole or not at all.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+from rcl_interfaces.msg import ParameterDescriptor, SetParametersResult
+from rclpy.node import Node
+from rclpy.parameter import Parameter as RosParameter
+
+Value = bool | int | float | str | tuple[float, ...] | tuple[str, ...] | None
+
+JOINT = "<joint>"
+"""Stands in a parameter's name for the name of each joint."""
+
+
+class ParameterError(ValueError):
+    """A parameter's value is refused; the message is one line for the user."""
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """One parameter. Its type is that of `default`; a tuple of floats also takes one float for all joints.
+
+    A `default` of None is a float that may be left unset.
+    """
+
+    name: str
+    default: Value
+    unit: str
+    description: str
+    lower: float | None = None
+    upper: float | None = None
+    choices: tuple[str, ...] | None = None
+    read_only: bool = False
+    check: Callable[[Value], None] | None = None  # raises ValueError with the reason
+    per_joint: bool = False  # a float that may be a list, one value for each joint
+
+    @property
+    def type_name(self) -> str:
+        """The type as the reference page has it."""
+        if self.per_joint:
+            return "double or double[]"
+        if isinstance(self.default, tuple):
+            return "string[]" if self.default and isinstance(self.default[0], str) else "double[]"
+        names = {bool: "bool", int: "int", float: "double", str: "string", type(None): "double"}
+        return names[type(self.default)]
+
+    @property
+    def range_text(self) -> str:
+        """What the value may be, for people; empty where there is no bound."""
+        unit = f" {self.unit}" if self.unit else ""
+        if self.choices is not None:
+            return "one of " + ", ".join(self.choices)
+        if self.lower is not None and self.upper is not None:
+            return f"from {self.lower:g} to {self.upper:g}{unit}"
+        if self.lower is not None:
+            return f"at least {self.lower:g}{unit}"
+        if self.upper is not None:
+            return f"at most {self.upper:g}{unit}"
+        return ""
+
+    def convert(self, value: object) -> Value:
+        """`value` as this parameter's own type; ParameterError says what it was and what it may be."""
+        converted = self._converted(value)
+        for number in converted if isinstance(converted, tuple) else (converted,):
+            if _is_number(number):
+                self._check_number(number)
+        if self.choices is not None and converted not in self.choices:
+            raise self._error(value, f"it may be {self.range_text}")
+        if self.check is not None:
+            try:
+                self.check(converted)
+            except ValueError as reason:
+                raise self._error(value, str(reason)) from reason
+        return converted
+
+    def _converted(self, value: object) -> Value:
+        if isinstance(self.default, bool):
+            if isinstance(value, bool):
+                return value
+            raise self._error(value, "it may be true or false")
+        if isinstance(self.default, str):
+            if isinstance(value, str):
+                return value
+            raise self._error(value, f"it may be {self.range_text or 'a string'}")
+        if isinstance(self.default, tuple) and self.default and isinstance(self.default[0], str):
+            if _is_sequence(value) and all(isinstance(item, str) for item in value):
+                return tuple(value)
+            raise self._error(value, "it may be a list of strings")
+        if isinstance(self.default, tuple) or (self.per_joint and _is_sequence(value)):
+            if _is_sequence(value) and len(value) > 0 and all(_is_number(item) for item in value):
+                return tuple(float(item) for item in value)
+            raise self._error(value, "it may be a list of numbers")
+        if value is None and self.default is None:
+            return None
+        if not _is_number(value):
+            raise self._error(
+                value, "it may be a number" + (f" {self.range_text}" if self.range_text else "")
+            )
+        if isinstance(self.default, int):
+            if float(value) != math.floor(value):
+                raise self._error(value, "it may be a whole number")
+            return int(value)
+        return float(value)
+
+    def _check_number(self, number: float) -> None:
+        if not math.isfinite(number):
+            raise self._error(number, f"it may be {self.range_text or 'any finite number'}")
+        if self.lower is not None and number < self.lower:
+            raise self._error(number, f"it may be {self.range_text}")
+        if self.upper is not None and number > self.upper:
+            raise self._error(number, f"it may be {self.range_text}")
+
+    def _error(self, value: object, reason: str) -> ParameterError:
+        return ParameterError(f"parameter '{self.name}' is {_shown(value)}: {reason}")
+
+    def descriptor(self) -> ParameterDescriptor:
+        """What `ros2 param describe` shows. Typing is dynamic so that an integer may stand for a float."""
+        unit = f" [{self.unit}]" if self.unit else ""
+        return ParameterDescriptor(
+            name=self.name,
+            description=self.description + unit,
+            additional_constraints=self.range_text,
+            read_only=self.read_only,
+            dynamic_typing=True,
+        )
+
+
+class ParameterSet(Mapping[str, Value]):
+    """The values in force, read as `values.rate` or `values["gains.p"]`.
+
+    A change replaces all values at once, so a reader on another thread sees the old set or the new one.
+    """
+
+    def __init__(self, values: Mapping[str, Value]) -> None:
+        self._values = dict(values)
+
+    def __getitem__(self, name: str) -> Value:
+        return self._values[name]
+
+    def __getattr__(self, name: str) -> Value:
+        try:
+            return self.__dict__["_values"][name]
+        except KeyError:
+            raise AttributeError(f"no parameter '{name}'") from None
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._values)
+
+    def __len__(self) -> int:
+        return len(self._values)
+
+    def per_joint(self, name: str, joints: Sequence[str]) -> tuple[float, ...]:
+        """One float for each of `joints` from a scalar or a list of that length, else ParameterError."""
+        value = self[name]
+        if not isinstance(value, tuple):
+            return (float(value),) * len(joints)
+        if len(value) != len(joints):
+            raise ParameterError(
+                f"parameter '{name}' has {len(value)} values: it may have one, "
+                f"or {len(joints)} ({', '.join(joints)})"
+            )
+        return value
+
+
+@dataclass(frozen=True)
+class ParameterTable:
+    """All parameters of one node."""
+
+    node: str
+    parameters: tuple[Parameter, ...]
+
+    def for_joints(self, joints: Sequence[str]) -> ParameterTable:
+        """The table with every `<joint>` row written out for each of `joints`."""
+        rows: list[Parameter] = []
+        for row in self.parameters:
+            if JOINT in row.name:
+                rows.extend(replace(row, name=row.name.replace(JOINT, joint)) for joint in joints)
+            else:
+                rows.append(row)
+        return ParameterTable(self.node, tuple(rows))
+
+    def defaults(self) -> ParameterSet:
+        """The values of a node that is given none."""
+        return ParameterSet({row.name: row.default for row in self.parameters})
+
+    def declare(self, node: Node, on_change: Callable[[ParameterSet], None] | None = None) -> ParameterSet:
+        """Declare all parameters on `node` and follow their changes.
+
+        `on_change` gets the whole new set after each value was checked, before it comes into force; a
+        ValueError from it refuses the change. Raises ParameterError for a bad value at the start.
+        """
+        values = ParameterSet({row.name: self._declared(node, row) for row in self.parameters})
+        rows = {row.name: row for row in self.parameters}
+
+        def on_set(changes: Sequence[RosParameter]) -> SetParametersResult:
+            try:
+                changed = {p.name: rows[p.name].convert(p.value) for p in changes if p.name in rows}
+                if not changed:
+                    return SetParametersResult(successful=True)
+                _refuse_unsetting(changes, rows)
+                candidate = ParameterSet({**values, **changed})
+                if on_change is not None:
+                    on_change(candidate)
+            except ValueError as reason:
+                node.get_logger().warning(f"refused, the old values stay in force: {reason}")
+                return SetParametersResult(successful=False, reason=str(reason))
+            values._values = candidate._values
+            return SetParametersResult(successful=True)
+
+        node.add_on_set_parameters_callback(on_set)
+        return values
+
+    @staticmethod
+    def _declared(node: Node, row: Parameter) -> Value:
+        default = list(row.default) if isinstance(row.default, tuple) else row.default
+        if node.has_parameter(row.name):
+            return row.convert(node.get_parameter(row.name).value)
+        return row.convert(node.declare_parameter(row.name, default, row.descriptor()).value)
+
+
+def _refuse_unsetting(changes: Sequence[RosParameter], rows: Mapping[str, Parameter]) -> None:
+    for change in changes:
+        if change.name in rows and change.type_ == RosParameter.Type.NOT_SET:
+            raise ParameterError(f"parameter '{change.name}' cannot be deleted")
+
+
+def _is_sequence(value: object) -> bool:
+    return not isinstance(value, str | bytes) and hasattr(value, "__len__") and hasattr(value, "__iter__")
+
+
+def _is_number(value: object) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool)
+
+
+def _shown(value: object) -> str:
+    if value is None:
+        return "not set"
+    return repr(list(value)) if _is_sequence(value) else repr(value)

@@ -1,0 +1,171 @@
+"""Run nodes: start, spin, loops on their thread, and a quiet end on SIGINT or SIGTERM.
+
+The order of the end matters: first the loops stop, then the executor, then the nodes go, then the context. A
+thread still spinning while the interpreter exits would abort the process.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import signal
+import sys
+import threading
+from collections.abc import Callable, Iterator, Sequence
+from types import FrameType
+
+import rclpy
+from rclpy.context import Context
+from rclpy.exceptions import NameValidationException
+from rclpy.executors import Executor, ExternalShutdownException, SingleThreadedExecutor
+from rclpy.impl.implementation_singleton import rclpy_implementation
+from rclpy.node import Node
+from rclpy.signals import SignalHandlerOptions
+from rclpy.task import Future
+from rclpy.utilities import get_default_context, remove_ros_args
+
+from gaik_ros.deadline_loop import DeadlineLoop, LoopThread
+
+WAKE = 0.1  # s: how often a spinning thread looks whether it should stop
+
+BAD_ARGUMENTS = 2  # exit code for a mistake of the user
+
+_ROS_ARGUMENT_ERRORS = (
+    rclpy_implementation.RCLInvalidROSArgsError,
+    rclpy_implementation.UnknownROSArgsError,
+    rclpy_implementation.RCLError,
+)
+
+
+def make_executor(context: Context | None = None) -> Executor:
+    """The events executor where rclpy has it, otherwise the single-threaded one; never the multi-threaded."""
+    try:
+        from rclpy.experimental import EventsExecutor
+    except ImportError:
+        return SingleThreadedExecutor(context=context)
+    return EventsExecutor(context=context)
+
+
+class Runner:
+    """Spins nodes and runs their loops until `stop`; `stop` may be called from a signal handler."""
+
+    def __init__(self, nodes: Sequence[Node], context: Context | None = None) -> None:
+        self._nodes = list(nodes)
+        self._context = context or get_default_context()
+        self._executor = make_executor(self._context)
+        self._stopped = Future(executor=self._executor)
+        loops = [loop for loop in (getattr(node, "loop", None) for node in nodes) if loop is not None]
+        self._loops = LoopThread(
+            [loop for loop in loops if isinstance(loop, DeadlineLoop)], self._loop_failed
+        )
+
+    def _loop_failed(self, error: BaseException) -> None:
+        self.stop()
+
+    def stop(self) -> None:
+        """Ask `spin` to return."""
+        if not self._stopped.done():
+            self._stopped.set_result(None)
+
+    def spin(self) -> None:
+        """Spin until `stop` or until the context is shut down. Raises what a loop's tick raised."""
+        for node in self._nodes:
+            self._executor.add_node(node)
+        self._loops.start()
+        try:
+            with contextlib.suppress(ExternalShutdownException):
+                while self._context.ok() and not self._stopped.done():
+                    # Without a timeout the events executor burns a core and fires nothing.
+                    self._executor.spin_until_future_complete(self._stopped, timeout_sec=WAKE)
+        finally:
+            self._loops.stop()
+            self._executor.shutdown()
+        if self._loops.error is not None:
+            raise self._loops.error
+
+    def destroy(self) -> None:
+        """Destroy the nodes, once `spin` has returned."""
+        for node in self._nodes:
+            node.destroy_node()
+
+
+@contextlib.contextmanager
+def running(nodes: Sequence[Node], context: Context | None = None) -> Iterator[Runner]:
+    """Run `nodes` in the background for the length of a with-block, then destroy them.
+
+    The context is the caller's to shut down. What a node's loop raised is raised at the block's end.
+    """
+    runner = Runner(nodes, context)
+    failures: list[BaseException] = []
+
+    def spin() -> None:
+        try:
+            runner.spin()
+        except BaseException as error:
+            failures.append(error)
+
+    thread = threading.Thread(target=spin, name="executor", daemon=True)
+    thread.start()
+    try:
+        yield runner
+    finally:
+        runner.stop()
+        thread.join()
+        runner.destroy()
+    if failures:
+        raise failures[0]
+
+
+def spin_together(nodes: Sequence[Node], context: Context | None = None) -> None:
+    """Run `nodes` in this thread until SIGINT, SIGTERM or the context's shutdown, then destroy them."""
+    runner = Runner(nodes, context)
+    try:
+        with stopped_by_signals(runner.stop):
+            runner.spin()
+    finally:
+        runner.destroy()
+
+
+@contextlib.contextmanager
+def stopped_by_signals(stop: Callable[[], None]) -> Iterator[None]:
+    """Call `stop` on the first SIGINT or SIGTERM; a second one ends the process as usual."""
+
+    def handle(number: int, frame: FrameType | None) -> None:
+        signal.signal(signal.SIGINT, signal.SIG_DFL)
+        signal.signal(signal.SIGTERM, signal.SIG_DFL)
+        stop()
+
+    previous = {number: signal.signal(number, handle) for number in (signal.SIGINT, signal.SIGTERM)}
+    try:
+        yield
+    finally:
+        for number, handler in previous.items():
+            signal.signal(number, handler)
+
+
+def run(factory: Callable[[], Node], args: Sequence[str] | None = None) -> int:
+    """Main of every executable: make the node, spin it, end quietly. Returns the exit code.
+
+    A mistake in the arguments, parameters or names gives one line on stderr and the exit code 2.
+    """
+    arguments = list(sys.argv if args is None else [sys.argv[0], *args])
+    try:
+        # rclpy's own signal handlers would shut the context down under a loop that is publishing.
+        rclpy.init(args=arguments, signal_handler_options=SignalHandlerOptions.NO)
+        stray = remove_ros_args(arguments)[1:]
+        if stray:
+            raise ValueError(f"unknown argument {stray[0]}; ROS arguments follow --ros-args")
+        spin_together([factory()])
+    except KeyboardInterrupt:
+        return 0  # Ctrl-C before the node was up
+    except (ValueError, NameValidationException, *_ROS_ARGUMENT_ERRORS) as error:
+        return _complain(error)
+    finally:
+        rclpy.try_shutdown()
+    return 0
+
+
+def _complain(error: Exception) -> int:
+    lines = [line.strip() for line in str(error).splitlines() if line.strip()]
+    name = sys.argv[0].rsplit("/", maxsplit=1)[-1]
+    print(f"{name}: {' '.join(lines)}", file=sys.stderr)
+    return BAD_ARGUMENTS
