@@ -1,0 +1,229 @@
+"""Kinematic chains: forward kinematics and Jacobian, by either algebra."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Literal, get_args
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from gaik_core.checks import finite_array, vector
+from gaik_core.errors import GaikError, ShapeError, UnknownNameError
+from gaik_core.joint import Joint
+from gaik_core.kernels import kinematics as kernels
+from gaik_core.packing import pack
+
+Array = NDArray[np.float64]
+Algebra = Literal["quaternion", "conformal"]
+
+ALGEBRAS: tuple[str, ...] = get_args(Algebra)
+_ALGEBRA_CODE = {"quaternion": kernels.QUATERNION, "conformal": kernels.CONFORMAL}
+
+
+def algebra_code(algebra: str) -> int:
+    """The kernels' number of an algebra; raises UnknownNameError."""
+    try:
+        return _ALGEBRA_CODE[algebra]
+    except (KeyError, TypeError):
+        raise UnknownNameError("algebra", algebra, ALGEBRAS) from None
+
+
+class KinematicChain:
+    """A serial chain of revolute and prismatic joints; never changed after it is made.
+
+    Angles are rad (m for prismatic joints), one for each joint that is not passive. The base frame is the frame of the robot file or of
+    the URDF's base link.
+
+    Attributes:
+        name, description: what it is.
+        joints: every axis from the base to the tip, passive ones too.
+        dof: how many values the chain has.
+        joint_names: (dof,) their names.
+        lower, upper: (dof,) the limits of the values; infinite where there are none.
+        home: (dof,) where a solve starts by default.
+        axis_names, axis_lower, axis_upper: (axes,) of the angles about the axes.
+        coupling, offset: (axes, dof) and (axes,): axis angles = coupling @ angles + offset.
+        limited: whether any limit is finite.
+        packed: the arrays the compiled kernels take.
+    """
+
+    def __init__(
+        self,
+        joints: Sequence[Joint],
+        *,
+        name: str = "chain",
+        description: str = "",
+        origin: ArrayLike = (0.0, 0.0, 0.0),
+        orientation: ArrayLike = (1.0, 0.0, 0.0, 0.0),
+    ) -> None:
+        """Build a chain from its joints.
+
+        Args:
+            joints: the axes from base to tip, as they stand when every angle is zero.
+            name: of the robot.
+            description: one line about it.
+            origin: (3,) where the first axis stands in the base frame (m).
+            orientation: (4,) unit quaternion (w, x, y, z) of the tip frame when every angle is zero.
+
+        Raises:
+            GaikError: where the chain has no joint, two of one name, or a coupling to a joint it has not.
+        """
+        self.joints = tuple(joints)
+        active = [joint for joint in self.joints if not joint.passive]
+        _check_names(self.joints, [joint.name for joint in active])
+        self.name = name
+        self.description = description
+        self.dof = len(active)
+        self.joint_names = tuple(joint.name for joint in active)
+        self.axis_names = tuple(joint.name for joint in self.joints)
+        turn = vector("orientation", orientation, 4)
+        self.packed = pack(self.joints, vector("origin", origin, 3), turn / np.linalg.norm(turn))
+        self.lower, self.upper = self.packed.limits
+        self.home = _frozen([joint.home for joint in active])
+        self.axis_lower = _frozen([joint.axis_lower for joint in self.joints])
+        self.axis_upper = _frozen([joint.axis_upper for joint in self.joints])
+        coupling = np.zeros((len(self.joints), self.dof))
+        for axis, joint, factor in self.packed.couplings:
+            coupling[int(axis), int(joint)] += factor
+        self.coupling = _frozen(coupling)
+        self.offset = self.packed.axes[:, 10]
+        self.limited = bool(np.isfinite(self.packed.limits).any() or len(self.packed.held))
+        self._inner_reach, self._outer_reach = _reach(self.joints)
+
+    def __repr__(self) -> str:
+        return f"KinematicChain({self.name!r}, joints={list(self.joint_names)})"
+
+    @classmethod
+    def load(cls, robot: str | Path) -> KinematicChain:
+        """A robot shipped with gaik_core by its name, or one from a YAML file by its path.
+
+        Raises:
+            UnknownRobotError: it is neither; the message lists the robots shipped.
+            RobotFileError: the file is malformed; the message names the key and what it may be.
+        """
+        from gaik_core.robot_file import load_robot  # the reader builds chains, so it imports this file
+
+        return load_robot(robot)
+
+    @staticmethod
+    def names() -> list[str]:
+        """The robots shipped with gaik_core."""
+        from gaik_core.robot_file import robot_names
+
+        return robot_names()
+
+    def forward(self, angles: ArrayLike, algebra: str = "quaternion") -> Array:
+        """Position of the tip (m): angles (dof,) give (3,), angles (m, dof) give (m, 3) (eqs. 23 and 54).
+
+        Raises:
+            ShapeError, NotFiniteError: angles that do not fit the chain.
+            UnknownNameError: an algebra other than "quaternion" and "conformal".
+        """
+        return self._poses(angles, algebra)[..., :3]
+
+    def pose(self, angles: ArrayLike, algebra: str = "quaternion") -> tuple[Array, Array]:
+        """Position (…, 3) of the tip (m) and its orientation (…, 4) as a unit quaternion (w, x, y, z)."""
+        result = self._poses(angles, algebra)
+        return result[..., :3], result[..., 3:]
+
+    def jacobian(self, angles: ArrayLike, algebra: str = "quaternion") -> Array:
+        """Derivative of the tip's position by the angles, (3, dof) in m/rad, at angles (dof,) (eqs. 39 and 50)."""
+        return self.geometric_jacobian(angles, algebra)[:3]
+
+    def geometric_jacobian(self, angles: ArrayLike, algebra: str = "quaternion") -> Array:
+        """Velocity (m/s) over angular velocity (rad/s) of the tip for each joint's rate, (6, dof), in the base frame."""
+        code = algebra_code(algebra)
+        values = vector("angles", angles, self.dof)
+        n = len(self.joints)
+        jacobian = np.empty((6, self.dof))
+        axes, couplings, ends, _, _ = self.packed
+        turned, columns, pose = np.empty(n), np.empty((6, n)), np.empty(7)
+        kernels.kinematics(code, axes, couplings, ends, values, turned, columns, pose, jacobian)
+        return jacobian
+
+    def axis_angles(self, angles: ArrayLike) -> Array:
+        """Angles about the axes (…, axes) for joint values (…, dof): C θ + offset."""
+        return finite_array("angles", angles) @ self.coupling.T + self.offset
+
+    def frames(self, angles: ArrayLike) -> Array:
+        """Where each axis stands and, last, the tip: (axes + 1, 3) in m, for drawing the arm."""
+        values = vector("angles", angles, self.dof)
+        points = np.empty((len(self.joints) + 1, 3))
+        kernels.joint_positions(self.packed.axes, self.packed.couplings, self.packed.ends, values, points)
+        return points
+
+    def inverse_velocity(
+        self,
+        angles: ArrayLike,
+        velocity: ArrayLike,
+        algebra: str = "quaternion",
+        damping: float | None = None,
+    ) -> Array:
+        """Joint rates (dof,) in rad/s that move the tip at `velocity` (3,) in m/s: see `gaik_core.velocity`."""
+        from gaik_core.velocity import damped_pseudo_inverse
+
+        wanted = vector("velocity", velocity, 3)
+        return damped_pseudo_inverse(self.jacobian(angles, algebra), damping) @ wanted
+
+    @property
+    def reach(self) -> float:
+        """No target further than this from the first axis can be reached (m); infinite with unbounded travel."""
+        return self._outer_reach
+
+    def proves_unreachable(self, position: Array, tolerance: float = 0.0) -> bool:
+        """Whether the lengths of the links alone rule a position (3,) out: too far, or in the hole around the base."""
+        distance = float(np.linalg.norm(position - self.packed.ends[:3]))
+        return not self._inner_reach - tolerance <= distance <= self._outer_reach + tolerance
+
+    def _poses(self, angles: ArrayLike, algebra: str) -> Array:
+        """Poses (…, 7) of the tip."""
+        code = algebra_code(algebra)
+        values = finite_array("angles", angles)
+        if values.ndim not in (1, 2) or values.shape[-1] != self.dof:
+            raise ShapeError("angles", np.shape(angles), f"({self.dof},) or (m, {self.dof})")
+        many = values.reshape(-1, self.dof)
+        result = np.empty((len(many), 7))
+        axes, couplings, ends, _, _ = self.packed
+        kernels.poses(code, axes, couplings, ends, many, result)
+        return result.reshape((*values.shape[:-1], 7))
+
+
+def _frozen(values: ArrayLike) -> Array:
+    array = np.array(values, dtype=float)
+    array.flags.writeable = False
+    return array
+
+
+def _check_names(joints: Sequence[Joint], active: Sequence[str]) -> None:
+    if not active:
+        raise GaikError("a chain needs at least one joint that is not passive; it has none")
+    names = [joint.name for joint in joints]
+    for name in names:
+        if names.count(name) > 1:
+            raise GaikError(f"two joints are called {name!r}; names must differ")
+    for joint in joints:
+        for other in joint.coupling:
+            if other not in active:
+                raise UnknownNameError(f"joint in the coupling of {joint.name!r}:", other, active)
+        if joint.passive and not joint.coupling:
+            raise GaikError(
+                f"joint {joint.name!r} is passive without a coupling; give it one, or a value of its own"
+            )
+
+
+def _reach(joints: Sequence[Joint]) -> tuple[float, float]:
+    """Nearest and furthest the tip can be from the first axis, by the lengths of the links alone (m)."""
+    lengths = [float(np.linalg.norm(joint.link)) for joint in joints]
+    travel = sum(_travel(joint) for joint in joints if joint.kind == "prismatic")
+    outer = sum(lengths) + travel
+    return max(0.0, 2.0 * max(lengths) - outer) if np.isfinite(outer) else 0.0, outer
+
+
+def _travel(joint: Joint) -> float:
+    """The furthest a prismatic joint moves either way (m)."""
+    low, high = joint.axis_lower, joint.axis_upper
+    if not joint.passive and not joint.coupling:
+        low, high = max(low, joint.lower + joint.offset), min(high, joint.upper + joint.offset)
+    return max(abs(low), abs(high))

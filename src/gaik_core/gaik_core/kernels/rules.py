@@ -1,0 +1,207 @@
+"""One update of the angles by each rule: `step(angles, error, jacobian, state, settings)`.
+
+`jacobian` is (r, d) and `error` (r,), with g = Jᵀ e the direction of descent (eqs. 34 and 53). `state` is (SLOTS, d), zero when a solve
+begins; its meaning is the rule's own. `settings` are the numbers of the class in `gaik_core.update_rules` that stands for the kernel.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gaik_core.kernels.compiled import compiled
+
+Array = NDArray[np.float64]
+
+SLOTS = 4
+"""Rows of a rule's state; the last one counts updates in its first element."""
+
+(
+    GRADIENT_DESCENT,
+    STEEPEST_DESCENT,
+    MOMENTUM,
+    NESTEROV,
+    RMSPROP,
+    ADAM,
+    AMSGRAD,
+    DAMPED,
+    LEVENBERG_MARQUARDT,
+) = range(9)
+
+
+@compiled
+def descent_direction(error: Array, jacobian: Array, joint: int) -> float:
+    """One element of g = Jᵀ e."""
+    total = 0.0
+    for row in range(error.shape[0]):
+        total += jacobian[row, joint] * error[row]
+    return total
+
+
+@compiled
+def gradient_descent(angles: Array, error: Array, jacobian: Array, state: Array, settings: Array) -> None:
+    """θ ← θ + α Jᵀ e (eqs. 34 and 53)."""
+    for j in range(angles.shape[0]):
+        angles[j] += settings[0] * descent_direction(error, jacobian, j)
+
+
+@compiled
+def steepest_descent(angles: Array, error: Array, jacobian: Array, state: Array, settings: Array) -> None:
+    """θ ← θ + α Jᵀ e with α = e·f / f·f, f = J Jᵀ e: the best step of the linearised arm (Buss 2004, Jacobian transpose method)."""
+    for j in range(angles.shape[0]):
+        state[0, j] = descent_direction(error, jacobian, j)
+    along, square = 0.0, 0.0
+    for row in range(error.shape[0]):
+        f = 0.0
+        for j in range(angles.shape[0]):
+            f += jacobian[row, j] * state[0, j]
+        along += error[row] * f
+        square += f * f
+    if square > 0.0:
+        for j in range(angles.shape[0]):
+            angles[j] += along / square * state[0, j]
+
+
+@compiled
+def momentum(angles: Array, error: Array, jacobian: Array, state: Array, settings: Array) -> None:
+    """v ← μ v + α g, θ ← θ + v (Polyak 1964)."""
+    for j in range(angles.shape[0]):
+        state[0, j] = settings[1] * state[0, j] + settings[0] * descent_direction(error, jacobian, j)
+        angles[j] += state[0, j]
+
+
+@compiled
+def nesterov(angles: Array, error: Array, jacobian: Array, state: Array, settings: Array) -> None:
+    """v ← μ v + α g, θ ← θ + μ v + α g: the look-ahead form of Sutskever et al. 2013 with θ at the look-ahead point."""
+    for j in range(angles.shape[0]):
+        step = settings[0] * descent_direction(error, jacobian, j)
+        state[0, j] = settings[1] * state[0, j] + step
+        angles[j] += settings[1] * state[0, j] + step
+
+
+@compiled
+def rmsprop(angles: Array, error: Array, jacobian: Array, state: Array, settings: Array) -> None:
+    """s ← ρ s + (1 - ρ) g², θ ← θ + α g / (√s + ε) (Hinton 2012)."""
+    for j in range(angles.shape[0]):
+        g = descent_direction(error, jacobian, j)
+        state[0, j] = settings[1] * state[0, j] + (1.0 - settings[1]) * g * g
+        angles[j] += settings[0] * g / (math.sqrt(state[0, j]) + settings[2])
+
+
+@compiled
+def adam(angles: Array, error: Array, jacobian: Array, state: Array, settings: Array) -> None:
+    """Algorithm 1 of Kingma and Ba 2015."""
+    state[SLOTS - 1, 0] += 1.0
+    unbias_first = 1.0 - settings[1] ** state[SLOTS - 1, 0]
+    unbias_second = 1.0 - settings[2] ** state[SLOTS - 1, 0]
+    for j in range(angles.shape[0]):
+        g = descent_direction(error, jacobian, j)
+        state[0, j] = settings[1] * state[0, j] + (1.0 - settings[1]) * g
+        state[1, j] = settings[2] * state[1, j] + (1.0 - settings[2]) * g * g
+        angles[j] += (
+            settings[0]
+            * (state[0, j] / unbias_first)
+            / (math.sqrt(state[1, j] / unbias_second) + settings[3])
+        )
+
+
+@compiled
+def amsgrad(angles: Array, error: Array, jacobian: Array, state: Array, settings: Array) -> None:
+    """Adam with the largest second moment so far (Reddi, Kale and Kumar 2018), its bias corrected as Adam's is."""
+    state[SLOTS - 1, 0] += 1.0
+    unbias_first = 1.0 - settings[1] ** state[SLOTS - 1, 0]
+    unbias_second = 1.0 - settings[2] ** state[SLOTS - 1, 0]
+    for j in range(angles.shape[0]):
+        g = descent_direction(error, jacobian, j)
+        state[0, j] = settings[1] * state[0, j] + (1.0 - settings[1]) * g
+        state[1, j] = settings[2] * state[1, j] + (1.0 - settings[2]) * g * g
+        state[2, j] = max(state[2, j], state[1, j])
+        angles[j] += (
+            settings[0]
+            * (state[0, j] / unbias_first)
+            / (math.sqrt(state[2, j] / unbias_second) + settings[3])
+        )
+
+
+@compiled
+def solve_normal(matrix: Array, vector: Array) -> None:
+    """Solve A x = b in place for a symmetric positive definite A, by its Cholesky factor."""
+    n = vector.shape[0]
+    for i in range(n):
+        for j in range(i + 1):
+            total = matrix[i, j]
+            for k in range(j):
+                total -= matrix[i, k] * matrix[j, k]
+            matrix[i, j] = math.sqrt(total) if i == j else total / matrix[j, j]
+    for i in range(n):
+        for k in range(i):
+            vector[i] -= matrix[i, k] * vector[k]
+        vector[i] /= matrix[i, i]
+    for i in range(n - 1, -1, -1):
+        for k in range(i + 1, n):
+            vector[i] -= matrix[k, i] * vector[k]
+        vector[i] /= matrix[i, i]
+
+
+@compiled
+def damped_step(angles: Array, error: Array, jacobian: Array, damping: float, relative: float) -> None:
+    """θ ← θ + Jᵀ (J Jᵀ + λ I)⁻¹ e, where λ = damping + relative · mean diagonal of J Jᵀ."""
+    rows, joints = error.shape[0], angles.shape[0]
+    normal = np.empty((rows, rows))
+    for i in range(rows):
+        for k in range(i + 1):
+            total = 0.0
+            for j in range(joints):
+                total += jacobian[i, j] * jacobian[k, j]
+            normal[i, k] = total
+    trace = 0.0
+    for i in range(rows):
+        trace += normal[i, i]
+    if trace == 0.0:  # no joint can move the tip
+        return
+    for i in range(rows):
+        normal[i, i] += damping + relative * trace / rows
+    weighed = error.copy()
+    solve_normal(normal, weighed)
+    for j in range(joints):
+        angles[j] += descent_direction(weighed, jacobian, j)
+
+
+@compiled
+def damped_least_squares(angles: Array, error: Array, jacobian: Array, state: Array, settings: Array) -> None:
+    """A constant damping λ² (Wampler 1986)."""
+    damped_step(angles, error, jacobian, settings[0] * settings[0], 1e-12)
+
+
+@compiled
+def levenberg_marquardt(angles: Array, error: Array, jacobian: Array, state: Array, settings: Array) -> None:
+    """A damping that fades with the loss: λ = c ½ |e|² + a small multiple of J Jᵀ (Sugihara 2011)."""
+    square = 0.0
+    for row in range(error.shape[0]):
+        square += error[row] * error[row]
+    damped_step(angles, error, jacobian, 0.5 * settings[0] * square, settings[1])
+
+
+@compiled
+def step(rule: int, angles: Array, error: Array, jacobian: Array, state: Array, settings: Array) -> None:
+    """Make one update by the rule's number."""
+    if rule == GRADIENT_DESCENT:
+        gradient_descent(angles, error, jacobian, state, settings)
+    elif rule == STEEPEST_DESCENT:
+        steepest_descent(angles, error, jacobian, state, settings)
+    elif rule == MOMENTUM:
+        momentum(angles, error, jacobian, state, settings)
+    elif rule == NESTEROV:
+        nesterov(angles, error, jacobian, state, settings)
+    elif rule == RMSPROP:
+        rmsprop(angles, error, jacobian, state, settings)
+    elif rule == ADAM:
+        adam(angles, error, jacobian, state, settings)
+    elif rule == AMSGRAD:
+        amsgrad(angles, error, jacobian, state, settings)
+    elif rule == DAMPED:
+        damped_least_squares(angles, error, jacobian, state, settings)
+    else:
+        levenberg_marquardt(angles, error, jacobian, state, settings)

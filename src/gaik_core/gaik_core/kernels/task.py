@@ -1,0 +1,92 @@
+"""What a solve drives to zero: the error of the tip, and the Jacobian that belongs to it.
+
+The loss is half the squared length of the error; its gradient is -Jᵀ e exactly (eqs. 33 and 53), for each kind of target:
+
+    POSITION   target (3,)    p                 e = p_d - p_f
+    POINTING   target (9,)    p, d, a           and below it w φ, φ the rotation vector that brings the tool axis a onto d
+    POSE       target (7,)    p, quaternion     and below it w φ, φ the rotation vector from the tip's orientation to the target's
+
+with w the weight in metres per radian.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gaik_core.kernels import quaternion as q
+from gaik_core.kernels.compiled import compiled
+
+Array = NDArray[np.float64]
+
+POSITION, POINTING, POSE = 0, 1, 2
+
+
+@compiled
+def task_rows(kind: int) -> int:
+    """How many rows error and Jacobian have."""
+    return 3 if kind == POSITION else 6
+
+
+@compiled
+def turn_onto(tool: q.Vector, wanted: q.Vector) -> q.Vector:
+    """The rotation vector that brings one unit vector onto another; from its opposite, about any axis across it."""
+    axis = q.cross(tool, wanted)
+    sine = math.sqrt(axis[0] * axis[0] + axis[1] * axis[1] + axis[2] * axis[2])
+    cosine = tool[0] * wanted[0] + tool[1] * wanted[1] + tool[2] * wanted[2]
+    if sine < 1e-12:
+        if cosine > 0.0:
+            return (0.0, 0.0, 0.0)
+        across = q.cross(tool, (1.0, 0.0, 0.0)) if abs(tool[0]) < 0.9 else q.cross(tool, (0.0, 1.0, 0.0))
+        norm = math.sqrt(across[0] * across[0] + across[1] * across[1] + across[2] * across[2])
+        return (math.pi * across[0] / norm, math.pi * across[1] / norm, math.pi * across[2] / norm)
+    scale = math.atan2(sine, cosine) / sine
+    return (scale * axis[0], scale * axis[1], scale * axis[2])
+
+
+@compiled
+def tool_direction(pose: Array, target: Array) -> q.Vector:
+    """The tool axis of a POINTING target where the tip now is."""
+    orientation = (pose[3], pose[4], pose[5], pose[6])
+    return q.rotate(orientation, (target[6], target[7], target[8]))
+
+
+@compiled
+def orientation_error(kind: int, target: Array, pose: Array) -> q.Vector:
+    """The rotation vector φ from the tip's orientation to the target's."""
+    if kind == POINTING:
+        return turn_onto(tool_direction(pose, target), (target[3], target[4], target[5]))
+    wanted = (target[3], target[4], target[5], target[6])
+    return q.rotation_vector(q.multiply(wanted, q.conjugate((pose[3], pose[4], pose[5], pose[6]))))
+
+
+@compiled
+def measure(
+    kind: int, weight: float, target: Array, pose: Array, jacobian: Array, error: Array
+) -> tuple[float, float]:
+    """Write the error, weigh the Jacobian's lower rows to match, and return the distance (m) and the angle (rad) left."""
+    for row in range(3):
+        error[row] = target[row] - pose[row]
+    distance = math.sqrt(error[0] * error[0] + error[1] * error[1] + error[2] * error[2])
+    if kind == POSITION:
+        return distance, 0.0
+    phi = orientation_error(kind, target, pose)
+    for row in range(3):
+        error[3 + row] = weight * phi[row]
+    if kind == POINTING:
+        remove_spin(tool_direction(pose, target), jacobian)
+    for row in range(3, 6):
+        for joint in range(jacobian.shape[1]):
+            jacobian[row, joint] *= weight
+    return distance, math.sqrt(phi[0] * phi[0] + phi[1] * phi[1] + phi[2] * phi[2])
+
+
+@compiled
+def remove_spin(tool: q.Vector, jacobian: Array) -> None:
+    """Take out of the Jacobian's angular rows the turning about the tool itself, which a POINTING target leaves free."""
+    for joint in range(jacobian.shape[1]):
+        spin = tool[0] * jacobian[3, joint] + tool[1] * jacobian[4, joint] + tool[2] * jacobian[5, joint]
+        for row in range(3):
+            jacobian[3 + row, joint] -= spin * tool[row]

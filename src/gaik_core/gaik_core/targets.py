@@ -1,0 +1,82 @@
+"""What a solve can be asked for: a position, a position with a tool direction, or a full pose."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from gaik_core.checks import vector
+from gaik_core.errors import GaikError
+from gaik_core.kernels.task import POINTING, POSE, POSITION
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Pointing:
+    """The tip at a position with an axis of the tool along a direction; turning about that axis is free.
+
+    Attributes:
+        position: (3,) in m, in the base frame.
+        direction: (3,) in the base frame; made a unit vector.
+        tool_axis: (3,) in the tip frame; made a unit vector.
+    """
+
+    position: ArrayLike
+    direction: ArrayLike
+    tool_axis: ArrayLike = (0.0, 0.0, 1.0)
+
+    def packed(self) -> Array:
+        """The nine numbers the kernels take."""
+        return np.concatenate(
+            [
+                vector("position", self.position, 3),
+                _unit("direction", self.direction, 3),
+                _unit("tool_axis", self.tool_axis, 3),
+            ]
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class Pose:
+    """The tip frame at a position with an orientation.
+
+    Attributes:
+        position: (3,) in m, in the base frame.
+        orientation: (4,) quaternion (w, x, y, z) from the tip frame to the base frame; made a unit quaternion.
+    """
+
+    position: ArrayLike
+    orientation: ArrayLike = (1.0, 0.0, 0.0, 0.0)
+
+    def packed(self) -> Array:
+        """The seven numbers the kernels take."""
+        return np.concatenate(
+            [
+                vector("position", self.position, 3),
+                _unit("orientation", self.orientation, 4),
+            ]
+        )
+
+
+Target = ArrayLike | Pointing | Pose
+
+
+def pack_target(target: Target) -> tuple[int, Array]:
+    """The kernels' number of the kind of target, and its numbers; raises ShapeError or NotFiniteError."""
+    if isinstance(target, Pointing):
+        return POINTING, target.packed()
+    if isinstance(target, Pose):
+        return POSE, target.packed()
+    return POSITION, vector("target", target, 3)
+
+
+def _unit(what: str, value: ArrayLike, length: int) -> Array:
+    array = vector(what, value, length)
+    norm = float(np.linalg.norm(array))
+    if norm == 0.0:
+        raise GaikError(f"{what} is {array.tolist()}; expected anything but zero")
+    result: Array = array / norm
+    return result
