@@ -1,8 +1,13 @@
-from glob import glob
+from pathlib import Path
 
 from setuptools import find_packages, setup
 
 package_name = "touch_sim"
+
+
+def files(pattern: str) -> list[str]:
+    return [str(path) for path in Path().glob(pattern)]
+
 
 setup(
     name=package_name,
@@ -13,10 +18,10 @@ setup(
     data_files=[
         ("share/ament_index/resource_index/packages", [f"resource/{package_name}"]),
         (f"share/{package_name}", ["package.xml"]),
-        (f"share/{package_name}/launch", glob("launch/*.launch.py")),
-        (f"share/{package_name}/urdf", glob(f"{package_name}/urdf/*.urdf")),
+        (f"share/{package_name}/launch", files("launch/*.launch.py")),
+        (f"share/{package_name}/urdf", files(f"{package_name}/urdf/*.urdf")),
         # pip puts console scripts into bin/ only; `ros2 run` looks in lib/<package>/.
-        (f"lib/{package_name}", glob("scripts/*")),
+        (f"lib/{package_name}", files("scripts/*")),
     ],
     install_requires=["gaik_core", "gaik_ros", "numpy>=1.26", "tqdm>=4.66"],
     extras_require={"figures": ["matplotlib>=3.6"], "test": ["pytest", "scipy"]},

@@ -1,4 +1,4 @@
-"""First-order joint dynamics `τ θ' + κ θ = K u` of the paper's device, stepped exactly, held inside its limits.
+"""First-order joint dynamics `τ θ' + κ θ = K u`, stepped exactly and held inside the joint limits.
 
 The paper names "first-order joint dynamics" only; K, τ and κ are a choice (see the defaults of `JointModel`).
 Nothing here knows ROS or reads a clock: a step takes an effort and a duration.
@@ -55,28 +55,32 @@ def hold_factor(stiffness: Array, time_constant: Array, dt: float) -> Array:
 class JointDynamics:
     """The joints of one device: their angles, their velocity, and the step under an effort.
 
-    `angles` (dof,) rad and `velocity` (dof,) rad/s hold after the last step; both are replaced by a step, never
-    changed in place, so that a caller may keep them.
+    `angles` (dof,) rad and `velocity` (dof,) rad/s hold after the last step. A step replaces both and never
+    changes them in place, so that a caller may keep them.
     """
 
     def __init__(self, model: JointModel, limits: JointLimits, angles: ArrayLike) -> None:
-        shape = limits.lower.shape
         self.limits = limits
+        self.set_model(model)
+        self.reset(angles)
+
+    def set_model(self, model: JointModel) -> None:
+        """Put other constants in force; the joints stay where they are."""
+        self.model = model
         self.gain, self.time_constant, self.stiffness, self.effort_limit = (
-            np.broadcast_to(np.asarray(value, dtype=float), shape).copy()
+            np.broadcast_to(np.asarray(value, dtype=float), self.limits.lower.shape).copy()
             for value in (model.gain, model.time_constant, model.stiffness, model.effort_limit)
         )
         self.mobility = self.gain / self.time_constant
-        self._hold_dt = -1.0
-        self._hold = np.zeros(shape)
-        self.reset(angles)
+        self._hold_dt: float | None = None
+        self._hold = np.zeros_like(self.gain)
 
     def reset(self, angles: ArrayLike) -> None:
         """Put the joints to `angles` (dof,) rad, at rest. Raise ValueError where these break a limit."""
-        angles = np.array(angles, dtype=float)
-        self.limits.check(angles)
-        self.angles: Array = angles
-        self.velocity: Array = np.zeros_like(angles)
+        start = np.array(angles, dtype=float)
+        self.limits.check(start)
+        self.angles: Array = start
+        self.velocity: Array = np.zeros_like(start)
 
     def step(self, effort: ArrayLike, dt: float) -> None:
         """Advance by `dt` s under the constant `effort` (dof,) N·m: the exact zero-order hold.
@@ -84,18 +88,18 @@ class JointDynamics:
         Each joint moves monotonically during a step, so that stopping at a limit is exact as well. Raise
         ValueError, with nothing changed, for an effort that is not finite or a negative dt.
         """
-        effort = np.asarray(effort, dtype=float)
-        if effort.shape != self.angles.shape or not np.isfinite(effort).all():
-            raise ValueError(f"effort must be {self.angles.size} finite numbers, not {effort}")
+        asked = np.asarray(effort, dtype=float)
+        if asked.shape != self.angles.shape or not np.isfinite(asked).all():
+            raise ValueError(f"effort must be {self.angles.size} finite numbers, not {asked.tolist()}")
         if not 0.0 <= dt < np.inf:
             raise ValueError(f"dt must be zero or positive, not {dt}")
         if dt != self._hold_dt:
             self._hold, self._hold_dt = hold_factor(self.stiffness, self.time_constant, dt), dt
-        effort = np.minimum(np.maximum(effort, -self.effort_limit), self.effort_limit)
+        given = np.minimum(np.maximum(asked, -self.effort_limit), self.effort_limit)
 
-        free = self.angles + self._hold * self._free_velocity(self.angles, effort)
+        free = self.angles + self._hold * self._free_velocity(self.angles, given)
         angles = self.limits.hold(self.angles, free, self.mobility)
-        velocity = self._free_velocity(angles, effort)
+        velocity = self._free_velocity(angles, given)
         if (angles != free).any() and dt > 0.0:
             # On a limit: what the limit lets through of the velocity.
             velocity = (self.limits.hold(angles, angles + velocity * dt, self.mobility) - angles) / dt
@@ -103,4 +107,4 @@ class JointDynamics:
 
     def _free_velocity(self, angles: Array, effort: Array) -> Array:
         """Return θ' = (K u - κ θ)/τ in rad/s."""
-        return (self.gain * effort - self.stiffness * angles) / self.time_constant
+        return np.asarray((self.gain * effort - self.stiffness * angles) / self.time_constant)

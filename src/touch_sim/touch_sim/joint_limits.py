@@ -23,7 +23,8 @@ TOLERANCE = 1e-9  # rad; a start this far outside is rounding, not a mistake
 class JointLimits:
     """`lower <= angles <= upper` and `axis_lower <= coupling @ angles + offset <= axis_upper`, all in rad.
 
-    lower, upper (dof,); coupling (axes, dof); offset, axis_lower, axis_upper (axes,). Infinite where there is none.
+    lower, upper (dof,); coupling (axes, dof); offset, axis_lower, axis_upper (axes,); infinite where there is
+    none.
     """
 
     lower: Array
@@ -60,7 +61,7 @@ class JointLimits:
         )
 
     def check(self, angles: Array) -> None:
-        """Raise ValueError, naming the joint or axis, where `angles` (dof,) break a limit or are not finite."""
+        """Raise ValueError where `angles` (dof,) are not finite or break a limit, whose name it says."""
         if angles.shape != self.lower.shape or not np.isfinite(angles).all():
             raise ValueError(f"angles must be {self.lower.size} finite numbers, not {angles.tolist()}")
         joints = zip(_named(self.joint_names, "joint", angles), angles, self.lower, self.upper, strict=True)
@@ -80,7 +81,7 @@ class JointLimits:
         """
         angles = np.minimum(np.maximum(moved, self.lower), self.upper)
         if not self.axis_lower.size or not self._excess(angles).any():
-            return angles
+            return np.asarray(angles)
         # Each pass either satisfies an axis or lays one more joint on its own stop.
         for _ in range(self.lower.size * self.axis_lower.size):
             for axis in np.flatnonzero(self._excess(angles)):
@@ -102,7 +103,8 @@ class JointLimits:
         way = np.where(free, mobility * row, 0.0)
         if not free.any():
             return angles
-        return np.minimum(np.maximum(angles - way * excess / (row @ way), self.lower), self.upper)
+        moved = angles - way * excess / (row @ way)
+        return np.asarray(np.minimum(np.maximum(moved, self.lower), self.upper))
 
     def _last_inside(self, previous: Array, angles: Array) -> Array:
         """Return the last point of the line from `previous` to `angles` that is inside every axis limit."""

@@ -1,0 +1,177 @@
+"""The node `touch_sim`: a device's twin that takes joint efforts and publishes joint states and the tip."""
+
+from __future__ import annotations
+
+import threading
+
+import numpy as np
+from geometry_msgs.msg import PointStamped
+from rclpy.node import Node
+from sensor_msgs.msg import JointState
+from std_srvs.srv import Trigger
+
+from gaik_core import KinematicChain
+from gaik_ros import qos
+from gaik_ros.conversions import JointMessageError, fill, joint_state, joint_values, stamp_now
+from gaik_ros.deadline_loop import DeadlineLoop
+from gaik_ros.health import LOOP_PARAMETERS, OK, WARN, Health, HealthReporter
+from gaik_ros.parameters import Parameter, ParameterSet, ParameterTable
+from gaik_ros.run import run
+from touch_sim.command_hold import CommandHold
+from touch_sim.description import ORIGIN_FRAME
+from touch_sim.dynamics import JointDynamics, JointModel
+from touch_sim.encoder import Encoder
+from touch_sim.joint_limits import JointLimits
+
+PARAMETERS = ParameterTable(
+    "touch_sim",
+    (
+        Parameter("robot", "touch_device", "", "a robot's name, or the path of a robot file", read_only=True),
+        Parameter(
+            "rate", 1000.0, "Hz", "how often the twin steps and publishes", 1.0, 10_000.0, read_only=True
+        ),
+        Parameter("gain", 1.0, "rad/(N·m)", "K of τ θ' + κ θ = K u", 1e-6, 1e6, per_joint=True),
+        Parameter("time_constant", 0.05, "s", "τ of τ θ' + κ θ = K u", 1e-6, 1e6, per_joint=True),
+        Parameter(
+            "stiffness", 0.0, "", "κ of τ θ' + κ θ = K u; 0 is a viscous axis", 0.0, 1e6, per_joint=True
+        ),
+        Parameter("effort_limit", 1.0, "N·m", "a larger effort is cut to this", 1e-6, 1e6, per_joint=True),
+        Parameter("start", None, "rad", "angles at the start and after a reset; unset: home", per_joint=True),
+        Parameter(
+            "command_timeout", 0.1, "s", "the effort is zero once the last command is older", 1e-3, 60.0
+        ),
+        Parameter("encoder.resolution", 0.0, "rad", "size of a count; 0: none", 0.0, 1.0, read_only=True),
+        Parameter("encoder.noise", 0.0, "rad", "standard deviation of a reading", 0.0, 1.0, read_only=True),
+        Parameter("encoder.seed", 0, "", "of the noise", 0, 2**31 - 1, read_only=True),
+        Parameter(
+            "encoder.velocity_time_constant",
+            0.01,
+            "s",
+            "low-pass of the velocity made from readings; not used by an ideal encoder",
+            0.0,
+            1.0,
+            read_only=True,
+        ),
+        Parameter("frame_id", ORIGIN_FRAME, "", "frame of the tip", read_only=True),
+        *LOOP_PARAMETERS,
+    ),
+)
+
+
+class TouchSim(Node):
+    """Steps the joints under the newest `joint_command`; publishes `joint_states` and `tip` at each step."""
+
+    def __init__(self, **node_kwargs: object) -> None:
+        super().__init__("touch_sim", **node_kwargs)
+        self._parameters = PARAMETERS.declare(self, self._parameters_changed)
+        values = self._parameters
+        self.chain = KinematicChain.load(values.robot)
+        self._names = self.chain.joint_names
+        self.dynamics = JointDynamics(
+            self._model(values), JointLimits.of_chain(self.chain), self._start(values)
+        )
+        self.encoder = Encoder(
+            values["encoder.resolution"],
+            values["encoder.noise"],
+            values["encoder.seed"],
+            values["encoder.velocity_time_constant"],
+        )
+        self.command = CommandHold(len(self._names), values.command_timeout)
+        self._lock = threading.Lock()  # the loop steps on its own thread
+        self._refused = 0
+        self._braking = False
+
+        self._state = joint_state(self._names)
+        self._tip = PointStamped()
+        self._tip.header.frame_id = values.frame_id
+        self._state_publisher = self.create_publisher(JointState, "joint_states", qos.JOINT_STATES)
+        self._tip_publisher = self.create_publisher(PointStamped, "tip", qos.TIP)
+        self.create_subscription(
+            JointState, "joint_command", self._command_received, qos.JOINT_COMMAND_SUBSCRIPTION
+        )
+        self.create_service(Trigger, "~/reset", self._reset)
+        self.loop = DeadlineLoop(values.rate, self._tick)
+        self.health = HealthReporter(self, values, self.loop, {"command": self._command_health})
+
+    def _model(self, values: ParameterSet) -> JointModel:
+        names = ("gain", "time_constant", "stiffness", "effort_limit")
+        return JointModel(*(values.per_joint(name, self._names) for name in names))
+
+    def _start(self, values: ParameterSet) -> np.ndarray:
+        if values.start is None:
+            return self.chain.home
+        try:
+            start = np.array(values.per_joint("start", self._names))
+            JointLimits.of_chain(self.chain).check(start)
+        except ValueError as reason:
+            raise ValueError(f"parameter 'start': {reason}") from reason
+        return start
+
+    def _parameters_changed(self, values: ParameterSet) -> None:
+        model = self._model(values)
+        self._start(values)
+        with self._lock:
+            self.dynamics.set_model(model)
+            self.command.timeout = values.command_timeout
+
+    def _command_received(self, message: JointState) -> None:
+        try:
+            effort = joint_values(message, self._names, "effort")
+        except JointMessageError as reason:
+            self._refused += 1
+            self.get_logger().warning(f"joint_command refused: {reason}", throttle_duration_sec=1.0)
+            return
+        with self._lock:
+            self.command.receive(effort)
+
+    def _reset(self, request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
+        start = self._start(self._parameters)
+        with self._lock:
+            self.dynamics.reset(start)
+            self.encoder.reset()
+            self.command.forget()
+        response.success = True
+        response.message = "at " + ", ".join(
+            f"{name} {angle:.4f} rad" for name, angle in zip(self._names, start, strict=True)
+        )
+        return response
+
+    def _tick(self, dt: float) -> None:
+        with self._lock:
+            effort = self.command.effort(dt)
+            self.dynamics.step(effort, dt)
+            angles, velocity = self.encoder.read(self.dynamics.angles, self.dynamics.velocity, dt)
+        self._publish(angles, velocity, effort)
+        if self.command.lost != self._braking:
+            self._report_command()
+
+    def _publish(self, angles: np.ndarray, velocity: np.ndarray, effort: np.ndarray) -> None:
+        stamp_now(self._state.header.stamp, self.get_clock())
+        self._tip.header.stamp = self._state.header.stamp
+        fill(self._state, "position", angles)
+        fill(self._state, "velocity", velocity)
+        fill(self._state, "effort", np.clip(effort, -self.dynamics.effort_limit, self.dynamics.effort_limit))
+        self._state_publisher.publish(self._state)
+        # What a driver knows of the tip comes from the encoders.
+        self._tip.point.x, self._tip.point.y, self._tip.point.z = self.chain.forward(angles).tolist()
+        self._tip_publisher.publish(self._tip)
+
+    def _report_command(self) -> None:
+        self._braking = self.command.lost
+        if self._braking:
+            self.get_logger().warning(f"no joint_command for {self.command.timeout:g} s: effort is zero")
+        else:
+            self.get_logger().info("joint_command is back")
+
+    def _command_health(self) -> Health:
+        figures = {"age_s": self.command.age, "refused": self._refused}
+        if self.command.lost:
+            return Health(WARN, "joint_command is too old: the effort is zero", figures)
+        if not self.command.received:
+            return Health(OK, "no joint_command yet", figures)
+        return Health(OK, "follows joint_command", figures)
+
+
+def main() -> int:
+    """Run the node; returns the exit code."""
+    return run(TouchSim)
