@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import sys
 import threading
+from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 from geometry_msgs.msg import PointStamped
+from numpy.typing import NDArray
 from rclpy.node import Node
 from sensor_msgs.msg import JointState
 from std_srvs.srv import Trigger
@@ -17,13 +21,16 @@ from gaik_ros.deadline_loop import DeadlineLoop
 from gaik_ros.health import LOOP_PARAMETERS, OK, WARN, Health, HealthReporter
 from gaik_ros.parameters import Parameter, ParameterSet, ParameterTable
 from gaik_ros.run import run
+from gaik_ros.watch import Watch
 from touch_sim.command_hold import CommandHold
 from touch_sim.description import ORIGIN_FRAME
 from touch_sim.dynamics import JointDynamics, JointModel
 from touch_sim.encoder import Encoder
 from touch_sim.joint_limits import JointLimits
 
-PARAMETERS = ParameterTable(
+Array = NDArray[np.float64]
+
+TABLE = ParameterTable(
     "touch_sim",
     (
         Parameter("robot", "touch_device", "", "a robot's name, or the path of a robot file", read_only=True),
@@ -61,10 +68,10 @@ PARAMETERS = ParameterTable(
 class TouchSim(Node):
     """Steps the joints under the newest `joint_command`; publishes `joint_states` and `tip` at each step."""
 
-    def __init__(self, **node_kwargs: object) -> None:
-        super().__init__("touch_sim", **node_kwargs)
-        self._parameters = PARAMETERS.declare(self, self._parameters_changed)
-        values = self._parameters
+    def __init__(self, **node_kwargs: Any) -> None:
+        super().__init__(TABLE.node, **node_kwargs)
+        self.values = TABLE.declare(self, self._parameters_changed)
+        values = self.values
         self.chain = KinematicChain.load(values.robot)
         self._names = self.chain.joint_names
         self.dynamics = JointDynamics(
@@ -78,26 +85,31 @@ class TouchSim(Node):
         )
         self.command = CommandHold(len(self._names), values.command_timeout)
         self._lock = threading.Lock()  # the loop steps on its own thread
-        self._refused = 0
         self._braking = False
-
         self._state = joint_state(self._names)
         self._tip = PointStamped()
         self._tip.header.frame_id = values.frame_id
-        self._state_publisher = self.create_publisher(JointState, "joint_states", qos.JOINT_STATES)
-        self._tip_publisher = self.create_publisher(PointStamped, "tip", qos.TIP)
-        self.create_subscription(
-            JointState, "joint_command", self._command_received, qos.JOINT_COMMAND_SUBSCRIPTION
-        )
-        self.create_service(Trigger, "~/reset", self._reset)
+        self._set_tip(self.dynamics.angles)  # compiles the kinematics before the loop needs it
+        self._connect()
         self.loop = DeadlineLoop(values.rate, self._tick)
-        self.health = HealthReporter(self, values, self.loop, {"command": self._command_health})
+        self.health = HealthReporter(
+            self, values, self.loop, {"command": self._command_health, "topics": self._watch.health}
+        )
+
+    def _connect(self) -> None:
+        self._watch = Watch(self)
+        self._state_publisher = self._watch.publisher(JointState, "joint_states", qos.JOINT_STATES)
+        self._tip_publisher = self._watch.publisher(PointStamped, "tip", qos.TIP)
+        self._watch.subscription(
+            JointState, "joint_command", self._on_command, qos.JOINT_COMMAND_SUBSCRIPTION, command=True
+        )
+        self.create_service(Trigger, "~/reset", self._on_reset)
 
     def _model(self, values: ParameterSet) -> JointModel:
         names = ("gain", "time_constant", "stiffness", "effort_limit")
         return JointModel(*(values.per_joint(name, self._names) for name in names))
 
-    def _start(self, values: ParameterSet) -> np.ndarray:
+    def _start(self, values: ParameterSet) -> Array:
         if values.start is None:
             return self.chain.home
         try:
@@ -114,18 +126,17 @@ class TouchSim(Node):
             self.dynamics.set_model(model)
             self.command.timeout = values.command_timeout
 
-    def _command_received(self, message: JointState) -> None:
+    def _on_command(self, message: JointState) -> None:
         try:
             effort = joint_values(message, self._names, "effort")
         except JointMessageError as reason:
-            self._refused += 1
-            self.get_logger().warning(f"joint_command refused: {reason}", throttle_duration_sec=1.0)
+            self._watch.refuse("joint_command", reason)
             return
         with self._lock:
             self.command.receive(effort)
 
-    def _reset(self, request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
-        start = self._start(self._parameters)
+    def _on_reset(self, request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
+        start = self._start(self.values)
         with self._lock:
             self.dynamics.reset(start)
             self.encoder.reset()
@@ -145,16 +156,19 @@ class TouchSim(Node):
         if self.command.lost != self._braking:
             self._report_command()
 
-    def _publish(self, angles: np.ndarray, velocity: np.ndarray, effort: np.ndarray) -> None:
+    def _publish(self, angles: Array, velocity: Array, effort: Array) -> None:
         stamp_now(self._state.header.stamp, self.get_clock())
         self._tip.header.stamp = self._state.header.stamp
         fill(self._state, "position", angles)
         fill(self._state, "velocity", velocity)
         fill(self._state, "effort", np.clip(effort, -self.dynamics.effort_limit, self.dynamics.effort_limit))
         self._state_publisher.publish(self._state)
-        # What a driver knows of the tip comes from the encoders.
-        self._tip.point.x, self._tip.point.y, self._tip.point.z = self.chain.forward(angles).tolist()
+        self._set_tip(angles)
         self._tip_publisher.publish(self._tip)
+
+    def _set_tip(self, angles: Array) -> None:
+        """Put the tip of the measured angles into its message: a driver knows no other."""
+        self._tip.point.x, self._tip.point.y, self._tip.point.z = self.chain.forward(angles).tolist()
 
     def _report_command(self) -> None:
         self._braking = self.command.lost
@@ -164,7 +178,7 @@ class TouchSim(Node):
             self.get_logger().info("joint_command is back")
 
     def _command_health(self) -> Health:
-        figures = {"age_s": self.command.age, "refused": self._refused}
+        figures = {"age_s": self.command.age}
         if self.command.lost:
             return Health(WARN, "joint_command is too old: the effort is zero", figures)
         if not self.command.received:
@@ -172,6 +186,10 @@ class TouchSim(Node):
         return Health(OK, "follows joint_command", figures)
 
 
-def main() -> int:
-    """Run the node; returns the exit code."""
-    return run(TouchSim)
+def main(args: Sequence[str] | None = None) -> int:
+    """Entry point of the executable."""
+    return run(TouchSim, args)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
