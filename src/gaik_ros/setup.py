@@ -5,7 +5,7 @@ from setuptools import find_packages, setup
 package_name = "gaik_ros"
 
 
-def files(folder, pattern):
+def files(folder: str, pattern: str) -> list[str]:
     return [str(path) for path in sorted(Path(folder).glob(pattern))]
 
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from difflib import get_close_matches
 
 from rcl_interfaces.msg import ParameterDescriptor, SetParametersResult
 from rclpy.node import Node
@@ -197,7 +198,8 @@ class ParameterTable:
         `on_change` gets the whole new set after each value was checked, before it comes into force; a
         ValueError from it refuses the change. Raises ParameterError for a bad value at the start.
         """
-        values = ParameterSet({row.name: self._declared(node, row) for row in self.parameters})
+        values = ParameterSet({row.name: _declared(node, row) for row in self.parameters})
+        self._warn_of_unknown(node)
         rows = {row.name: row for row in self.parameters}
 
         def on_set(changes: Sequence[RosParameter]) -> SetParametersResult:
@@ -218,12 +220,25 @@ class ParameterTable:
         node.add_on_set_parameters_callback(on_set)
         return values
 
-    @staticmethod
-    def _declared(node: Node, row: Parameter) -> Value:
-        default = list(row.default) if isinstance(row.default, tuple) else row.default
-        if node.has_parameter(row.name):
-            return row.convert(node.get_parameter(row.name).value)
-        return row.convert(node.declare_parameter(row.name, default, row.descriptor()).value)
+    def declare_first(self, node: Node, name: str) -> Value:
+        """Declare one parameter, which the others depend on, before the rest, and give its value."""
+        return _declared(node, next(row for row in self.parameters if row.name == name))
+
+    def _warn_of_unknown(self, node: Node) -> None:
+        """Say which parameters were given that this node does not have: a misspelt one would do nothing."""
+        for name in node._parameter_overrides:  # rclpy has no public way to see them
+            if not node.has_parameter(name) and not name.startswith("qos_overrides."):
+                near = get_close_matches(name, [row.name for row in self.parameters], n=1)
+                hint = f"; did you mean '{near[0]}'?" if near else ""
+                node.get_logger().warning(f"there is no parameter '{name}' here{hint}")
+
+
+def _declared(node: Node, row: Parameter) -> Value:
+    """The value of one parameter, declared if it is not yet."""
+    default = list(row.default) if isinstance(row.default, tuple) else row.default
+    if not node.has_parameter(row.name):
+        node.declare_parameter(row.name, default, row.descriptor())
+    return row.convert(node.get_parameter(row.name).value)
 
 
 def _refuse_unsetting(changes: Sequence[RosParameter], rows: Mapping[str, Parameter]) -> None:

@@ -1,0 +1,309 @@
+"""Inverse kinematics as a node: setpoints in, a joint reference out, and a verdict on each."""
+
+from __future__ import annotations
+
+import math
+import threading
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from diagnostic_msgs.msg import DiagnosticStatus
+from geometry_msgs.msg import Point
+from numpy.typing import NDArray
+from rclpy.node import Node
+from rclpy.serialization import deserialize_message
+from sensor_msgs.msg import JointState
+from std_srvs.srv import Trigger
+
+from gaik_core import ALGEBRAS, RULES, KinematicChain, rule_by_name
+from gaik_ros import qos
+from gaik_ros.continuous_ik import ContinuousIk, Result
+from gaik_ros.conversions import JointMessageError, fill, joint_state, joint_values, point_to_array, stamp_now
+from gaik_ros.deadline_loop import DeadlineLoop
+from gaik_ros.health import LOOP_PARAMETERS, OK, WARN, Health, HealthReporter, worst
+from gaik_ros.parameters import Parameter, ParameterSet, ParameterTable
+from gaik_ros.periods import Percentiles, TimeWindow
+from gaik_ros.reference import JointReference
+from gaik_ros.run import run
+from gaik_ros.setpoint_motion import SetpointMotion
+from gaik_ros.verdict import Verdict, describe, verdict_message
+from gaik_ros.watch import Watch
+
+Array = NDArray[np.float64]
+
+LATCH, STREAM = "latch", "stream"
+
+TABLE = ParameterTable(
+    "ik_node",
+    (
+        Parameter(
+            "robot", "touch_device", "", "a robot of gaik_core, or the path of a robot file", read_only=True
+        ),
+        Parameter("algebra", "quaternion", "", "the algebra to compute in", choices=tuple(ALGEBRAS)),
+        Parameter("rule", "gradient_descent", "", "the update rule", choices=tuple(RULES)),
+        Parameter("learning_rate", 20.0, "", "of the rule, where it has one; 0: the rule's own default", 0.0),
+        Parameter("tolerance", 1e-6, "m", "distance at which a setpoint counts as reached", 1e-12, 1.0),
+        Parameter("max_iterations", 1000, "", "updates of one solve", 1, 1_000_000),
+        Parameter(
+            "max_joint_speed",
+            1.5,
+            "rad/s",
+            "limit on the reference's speed, one or one for each joint",
+            1e-6,
+            per_joint=True,
+        ),
+        Parameter("rate", 100.0, "Hz", "rate of the reference", 1.0, 1000.0, read_only=True),
+        Parameter(
+            "setpoint_mode",
+            LATCH,
+            "",
+            "what the last setpoint means when no more come: it is carried out, or the arm stops",
+            choices=(LATCH, STREAM),
+        ),
+        Parameter("setpoint_timeout", 0.25, "s", "age of a setpoint at which a stream is dead", 0.001),
+        Parameter("setpoint_bound", 10.0, "m", "a coordinate beyond this is refused as absurd", 0.001),
+        Parameter(
+            "state_timeout", 1.0, "s", "joint_states older than this are no place to start from", 0.001
+        ),
+        *LOOP_PARAMETERS,
+        Parameter(
+            "diagnostics.solve_p99_warn", 0.005, "s", "99th percentile of the solve time that warns", 0.0
+        ),
+    ),
+)
+
+
+@dataclass(frozen=True, eq=False)
+class _Setpoint:
+    position: Array  # (3,) m
+    sequence: int
+    time: float  # s, when it was received
+
+
+def ik_of(chain: KinematicChain, values: ParameterSet) -> ContinuousIk:
+    """The solver that the parameters describe. GaikError: the rule cannot have that learning rate."""
+    rule = rule_by_name(values.rule, values.learning_rate or None)
+    return ContinuousIk(chain, values.algebra, rule, values.tolerance, values.max_iterations)
+
+
+class IkNode(Node):
+    """setpoint in, joint_reference and `~/status` out; `~/solve_from_here`."""
+
+    def __init__(self, **node_kwargs: Any) -> None:
+        super().__init__(TABLE.node, **node_kwargs)
+        self._lock = threading.Lock()  # callbacks aim the reference that the loop's thread advances
+        self.values = TABLE.declare(self, self._configure)
+        self.chain = KinematicChain.load(self.values.robot)
+        self._names = list(self.chain.joint_names)
+        self._ik = ik_of(self.chain, self.values)
+        self._ik.solve(self.chain.forward(self.chain.home) + 0.01, self.chain.home)  # compiles the kernels
+        self.values.per_joint("max_joint_speed", self._names)
+        self._forget()
+        self._connect()
+        self.loop = DeadlineLoop(self.values.rate, self._tick)
+        self.health = HealthReporter(
+            self, self.values, self.loop, {"setpoints": self._setpoint_health, "topics": self._watch.health}
+        )
+
+    def _forget(self) -> None:
+        """The state of a node that has heard nothing."""
+        self._received = self._solved = self._superseded = 0
+        self._newest: _Setpoint | None = None  # not answered yet
+        self._setpoint: _Setpoint | None = None  # the last answered
+        self._told_waiting = 0  # sequence of the last setpoint said to be waiting
+        self._raw_state: tuple[bytes, float] | None = None
+        self._motion = SetpointMotion()
+        self._angles: Array | None = None  # the last answer: where the next solve starts
+        self._reference: JointReference | None = None
+        self._published = 0.0  # s, when the reference was advanced and published last
+        self._stream_dead = False
+        self._solve_times = TimeWindow()
+
+    def _connect(self) -> None:
+        self._watch = Watch(self)
+        zero = np.zeros(self.chain.dof)
+        self._message = joint_state(self._names, position=zero, velocity=zero)
+        self._publisher = self._watch.publisher(
+            JointState, "joint_reference", qos.JOINT_REFERENCE, command=True
+        )
+        self._status = self._watch.publisher(DiagnosticStatus, "~/status", qos.STATUS)
+        self._watch.subscription(Point, "setpoint", self._on_setpoint, qos.SETPOINT, command=True)
+        # Only the start of a motion needs the state, so a thousand a second are kept as bytes, not read.
+        self._watch.subscription(
+            JointState, "joint_states", self._on_state, qos.JOINT_STATES_SUBSCRIPTION, raw=True
+        )
+        self.create_service(Trigger, "~/solve_from_here", self._on_solve_from_here)
+
+    def _configure(self, values: ParameterSet) -> None:
+        ik = ik_of(self.chain, values)
+        limit = values.per_joint("max_joint_speed", self._names)
+        with self._lock:
+            self._ik = ik
+            if self._reference is not None:
+                self._reference.set_speed_limit(limit)
+
+    def _on_state(self, raw: bytes) -> None:
+        self._raw_state = (raw, time.monotonic())
+        if self._newest is not None and self._reference is None:
+            self._answer()
+
+    def _on_setpoint(self, message: Point) -> None:
+        self._received += 1
+        position = point_to_array(message)
+        if not (np.abs(position) <= self.values.setpoint_bound).all():  # false for NaN too
+            self._refuse(position)
+            return
+        if self._newest is not None:
+            self._superseded += 1
+        else:
+            # Answered after the messages that are already here, so that a flood does not delay the newest.
+            self.executor.create_task(self._answer)
+        self._newest = _Setpoint(position, self._received, time.monotonic())
+
+    def _refuse(self, position: Array) -> None:
+        if np.isfinite(position).all():
+            reason = f"{position.tolist()}: a coordinate is beyond {self.values.setpoint_bound:g} m"
+        else:
+            reason = f"{position.tolist()}: every coordinate must be finite"
+        self._watch.refuse("setpoint", reason)
+        self._publish_verdict(Verdict(self._received, position, Result.REFUSED, f"refused, {reason}"))
+
+    def _answer(self) -> None:
+        """Answer the newest setpoint, if it has not been; let it wait where the device is not known."""
+        setpoint = self._newest
+        if setpoint is None:
+            return
+        if self._reference is None and not self._start():
+            if self._told_waiting != setpoint.sequence:
+                self._told_waiting = setpoint.sequence
+                message = "waiting for joint_states to start from"
+                self._publish_verdict(Verdict(setpoint.sequence, setpoint.position, Result.WAITING, message))
+                self.get_logger().info(message, throttle_duration_sec=5.0)
+            return
+        self._newest = None
+        self._solve(setpoint)
+
+    def _start(self) -> bool:
+        """Begin where the device is; False where that is not known."""
+        position = self._measured()
+        if position is None:
+            return False
+        limit = self.values.per_joint("max_joint_speed", self._names)
+        with self._lock:
+            self._angles = position
+            self._reference = JointReference(position, limit)
+            self._published = time.monotonic()
+        return True
+
+    def _measured(self) -> Array | None:
+        """The joints' positions from the newest joint_states, None if there are none, too old or unusable."""
+        if self._raw_state is None or time.monotonic() - self._raw_state[1] > self.values.state_timeout:
+            return None
+        try:
+            return joint_values(deserialize_message(self._raw_state[0], JointState), self._names)
+        except JointMessageError as reason:
+            self._watch.refuse("joint_states", reason)
+            return None
+
+    def _solve(self, setpoint: _Setpoint) -> None:
+        began = time.perf_counter()
+        answer = self._ik.solve(setpoint.position, self._angles)
+        elapsed = time.perf_counter() - began
+        velocity = self._motion.add(setpoint.position, setpoint.time)
+        moving = answer.result is Result.REACHED and velocity.any()
+        rates = self.chain.inverse_velocity(answer.angles, velocity) if moving else None
+        with self._lock:
+            self._angles, self._setpoint = answer.angles, setpoint
+            self._stream_dead = False
+            self._reference.aim(answer.angles, rates)
+            self._publish_reference(time.monotonic())
+        self._solved += 1
+        self._solve_times.add(elapsed)
+        superseded, self._superseded = self._superseded, 0
+        self._publish_verdict(
+            Verdict(
+                setpoint.sequence,
+                setpoint.position,
+                answer.result,
+                describe(answer),
+                superseded,
+                elapsed,
+                answer,
+            )
+        )
+
+    def _tick(self, dt: float) -> None:
+        now = time.monotonic()
+        with self._lock:
+            if self._reference is None or self._setpoint is None:
+                return
+            self._stop_dead_stream(now)
+            if self._motion.standing(now):
+                self._reference.rest()
+            # A setpoint that was answered just now has published the reference already.
+            if now - self._published > 0.95 / self.loop.rate:
+                self._publish_reference(now)
+
+    def _stop_dead_stream(self, now: float) -> None:
+        if self.values.setpoint_mode != STREAM or self._stream_dead:
+            return
+        if now - self._setpoint.time > self.values.setpoint_timeout:
+            self._stream_dead = True
+            if not self._reference.arrived:
+                self.get_logger().warning("the stream of setpoints is dead: stopped")
+            self._reference.stop()
+
+    def _publish_reference(self, now: float) -> None:
+        """Advance the reference to `now` and publish it; the lock is held."""
+        # After a stall the reference goes on from where it was; it does not make up for the time.
+        elapsed = min(now - self._published, 2.0 / self.loop.rate)
+        self._reference.advance(elapsed)
+        self._published = now
+        fill(self._message, "position", self._reference.position)
+        fill(self._message, "velocity", self._reference.velocity)
+        stamp_now(self._message.header.stamp, self.get_clock())
+        self._publisher.publish(self._message)
+
+    def _publish_verdict(self, verdict: Verdict) -> None:
+        name = self.get_fully_qualified_name().lstrip("/")
+        self._status.publish(verdict_message(f"{name}: setpoint", verdict))
+
+    def _on_solve_from_here(self, request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
+        """Start anew from where the device is, and solve the last setpoint again."""
+        if not self._start():
+            response.success, response.message = False, "no joint_states to start from"
+            return response
+        if self._newest is None and self._setpoint is not None:
+            self._newest = self._setpoint
+        self._answer()
+        response.success, response.message = True, "started from where the device is"
+        return response
+
+    def _setpoint_health(self) -> Health:
+        solve, now = Percentiles.of(self._solve_times.take()), time.monotonic()
+        findings = []
+        if solve.p99 > self.values["diagnostics.solve_p99_warn"]:
+            findings.append((WARN, f"99th percentile of the solve time is {solve.p99:.4f} s"))
+        if self._newest is not None and self._reference is None:
+            findings.append((WARN, "a setpoint waits for joint_states"))
+        if self._stream_dead:
+            findings.append((WARN, "the stream of setpoints is dead"))
+        level, message = worst(findings)
+        figures = {
+            "received": self._received,
+            "solved": self._solved,
+            "solve_p50_s": solve.p50,
+            "solve_p99_s": solve.p99,
+            "setpoint_age_s": now - self._setpoint.time if self._setpoint else math.nan,
+            "state_age_s": now - self._raw_state[1] if self._raw_state else math.nan,
+            "arrived": self._reference is not None and self._reference.arrived,
+        }
+        return Health(level if findings else OK, message, figures)
+
+
+def main(args: Sequence[str] | None = None) -> int:
+    """Entry point of the executable."""
+    return run(IkNode, args)
