@@ -107,6 +107,19 @@ class KinematicChain:
 
         return load_robot(robot)
 
+    @classmethod
+    def from_urdf(
+        cls, text_or_path: str | Path, base: str | None = None, tip: str | None = None, name: str | None = None
+    ) -> KinematicChain:
+        """The chain between two links of a URDF, given as text or path: see `gaik_core.urdf.chain_from_urdf`.
+
+        Raises:
+            UrdfError: what is wrong with it, in one line.
+        """
+        from gaik_core.urdf import chain_from_urdf  # the reader builds chains, so it imports this file
+
+        return chain_from_urdf(text_or_path, base, tip, name)
+
     @staticmethod
     def names() -> list[str]:
         """The robots shipped with gaik_core."""
