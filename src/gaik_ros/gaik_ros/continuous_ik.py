@@ -82,8 +82,9 @@ class ContinuousIk:
         near = float(np.linalg.norm(target - tip)) <= STEP
         if direct.converged and near and np.abs(direct.angles - start).max() <= JUMP:
             return self._answer(target, direct)
-        walked = self._approach(tip, self._within_reach(target), start)
-        polished = self._solve(target, walked)
+        aim = self._within_reach(target)
+        walked = self._approach(tip, aim, start)
+        polished = self._solve(target, self._solve(aim, walked).angles)
         if not polished.converged:
             # No way along the line: the direct answer, even on another branch, is better than none.
             return self._answer(target, min((direct, polished), key=lambda s: (not s.converged, s.error)))

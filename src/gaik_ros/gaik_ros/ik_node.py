@@ -43,8 +43,8 @@ TABLE = ParameterTable(
             "robot", "touch_device", "", "a robot of gaik_core, or the path of a robot file", read_only=True
         ),
         Parameter("algebra", "quaternion", "", "the algebra to compute in", choices=tuple(ALGEBRAS)),
-        Parameter("rule", "gradient_descent", "", "the update rule", choices=tuple(RULES)),
-        Parameter("learning_rate", 20.0, "", "of the rule, where it has one; 0: the rule's own default", 0.0),
+        Parameter("rule", "levenberg_marquardt", "", "the update rule", choices=tuple(RULES)),
+        Parameter("learning_rate", 0.0, "", "of the rule, where it has one; 0: the rule's own default", 0.0),
         Parameter("tolerance", 1e-6, "m", "distance at which a setpoint counts as reached", 1e-12, 1.0),
         Parameter("max_iterations", 1000, "", "updates of one solve", 1, 1_000_000),
         Parameter(

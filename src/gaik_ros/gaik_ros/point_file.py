@@ -23,7 +23,9 @@ def read_points(path: str | Path) -> NDArray[np.float64]:
         with Path(path).open(newline="", encoding="utf-8-sig") as file:
             lines = [(n, row) for n, row in _rows(file) if row and not row[0].lstrip().startswith("#")]
     except (OSError, UnicodeDecodeError, csv.Error) as reason:
-        raise PointFileError(f"{path} cannot be read: {reason}") from reason
+        raise PointFileError(
+            f"{path} cannot be read: {getattr(reason, 'strerror', None) or reason}"
+        ) from reason
     if not lines:
         raise PointFileError(f"{path} is empty: its first line must name the columns x, y and z")
     number, header = lines[0]

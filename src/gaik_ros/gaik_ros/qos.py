@@ -1,7 +1,8 @@
-"""Quality of service, one profile per topic, with the reason for each.
+"""Quality of service: one profile for each topic, and the reason for it. Everything is volatile, newest last."""
 
-Every command and state topic keeps the newest message only: for control an old value is worse than none.
-"""
+from __future__ import annotations
+
+from dataclasses import dataclass
 
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
 
@@ -15,31 +16,80 @@ def _profile(depth: int, reliability: ReliabilityPolicy) -> QoSProfile:
     )
 
 
-RELIABLE, BEST_EFFORT = ReliabilityPolicy.RELIABLE, ReliabilityPolicy.BEST_EFFORT
+_RELIABLE, _BEST_EFFORT = ReliabilityPolicy.RELIABLE, ReliabilityPolicy.BEST_EFFORT
 
-# A setpoint is sent once by hand and must arrive, and `ros2 topic pub` offers reliable. Depth 1: newest wins.
-# Volatile: a setpoint from before the node's start must not move the arm at its start.
-SETPOINT = _profile(1, RELIABLE)
+SETPOINT = _profile(1, _RELIABLE)
+JOINT_REFERENCE = _profile(1, _RELIABLE)
+JOINT_STATES = _profile(1, _RELIABLE)
+JOINT_STATES_SUBSCRIPTION = _profile(1, _BEST_EFFORT)
+JOINT_COMMAND = _profile(1, _RELIABLE)
+JOINT_COMMAND_SUBSCRIPTION = _profile(1, _BEST_EFFORT)
+TIP = _profile(10, _RELIABLE)
+STATUS = _profile(100, _RELIABLE)
+DIAGNOSTICS = _profile(10, _RELIABLE)
 
-# Published at 100 Hz again and again, so a lost one would cost 10 ms; reliable is cheap at this rate, and any
-# subscriber may connect to it.
-JOINT_REFERENCE = _profile(1, RELIABLE)
 
-# The real drivers and robot_state_publisher offer or ask for reliable; a best-effort subscription connects to
-# both. So publishers offer reliable, and our subscription asks for best effort: no resend of an old state.
-JOINT_STATES = _profile(1, RELIABLE)
-JOINT_STATES_SUBSCRIPTION = _profile(1, BEST_EFFORT)
+@dataclass(frozen=True)
+class Topic:
+    """One topic: its type, what is offered and asked for there, and why."""
 
-# At 1000 Hz the next command comes before a resend would.
-# Offered reliable, so that a driver that asks for it hears it; asked for as best effort.
-JOINT_COMMAND = _profile(1, RELIABLE)
-JOINT_COMMAND_SUBSCRIPTION = _profile(1, BEST_EFFORT)
+    name: str
+    message: str
+    offered: QoSProfile
+    asked: QoSProfile
+    reason: str
 
-# For plots and logs, which like to have every sample: a little depth.
-TIP = _profile(10, RELIABLE)
 
-# One verdict per solved setpoint, none of which should be lost: reliable, and depth for a burst.
-STATUS = _profile(100, RELIABLE)
-
-# As diagnostic_updater has it.
-DIAGNOSTICS = _profile(10, RELIABLE)
+TOPICS = (
+    Topic(
+        "setpoint",
+        "geometry_msgs/msg/Point",
+        SETPOINT,
+        SETPOINT,
+        "One sent once by hand must arrive, and `ros2 topic pub` offers reliable. Depth 1: the newest wins. "
+        "Volatile: a setpoint from before a node's start must not move the arm at its start.",
+    ),
+    Topic(
+        "joint_reference",
+        "sensor_msgs/msg/JointState",
+        JOINT_REFERENCE,
+        JOINT_REFERENCE,
+        "At 100 Hz a lost one would cost 10 ms, and a resend is cheap. Depth 1: an old reference is of no use.",
+    ),
+    Topic(
+        "joint_states",
+        "sensor_msgs/msg/JointState",
+        JOINT_STATES,
+        JOINT_STATES_SUBSCRIPTION,
+        "Offered reliable, since robot_state_publisher and plots may ask for that; asked for best effort, so that "
+        "any driver fits, and because the next state comes before a resend would.",
+    ),
+    Topic(
+        "joint_command",
+        "sensor_msgs/msg/JointState",
+        JOINT_COMMAND,
+        JOINT_COMMAND_SUBSCRIPTION,
+        "As joint_states: a driver may ask for either, and the next command comes before a resend would.",
+    ),
+    Topic(
+        "tip",
+        "geometry_msgs/msg/PointStamped",
+        TIP,
+        TIP,
+        "For plots and recordings, which want every sample: a little depth.",
+    ),
+    Topic(
+        "~/status",
+        "diagnostic_msgs/msg/DiagnosticStatus",
+        STATUS,
+        STATUS,
+        "One verdict for each setpoint, none of which should be lost: depth for a burst.",
+    ),
+    Topic(
+        "/diagnostics",
+        "diagnostic_msgs/msg/DiagnosticArray",
+        DIAGNOSTICS,
+        DIAGNOSTICS,
+        "As diagnostic_updater has it.",
+    ),
+)
