@@ -42,10 +42,11 @@ def chain_from_urdf(
 ) -> KinematicChain:
     """The chain between two links of a URDF.
 
-    Fixed joints become part of the links; revolute, continuous and prismatic joints become axes. A mimic joint is a passive axis that
-    follows the joint it mimics, with its own limits as the axis' limits. Where the joint it mimics is not between the two links (the
-    other finger of a gripper, say), that joint's value is a value of the chain all the same, under its own name and within its own
-    limits. `home` is zero, moved into the limits. Soft limits, efforts and velocities are left out.
+    Fixed joints become part of the links; revolute, continuous and prismatic joints become axes. A mimic joint is a
+    passive axis that follows the joint it mimics, with its own limits as the axis' limits. Where the joint it mimics is
+    not between the two links (the other finger of a gripper, say), that joint's value is a value of the chain all the
+    same, under its own name and within its own limits. `home` is zero, moved into the limits. Soft limits, efforts and
+    velocities are left out.
 
     Args:
         text_or_path: the URDF's text, or the path of a file. xacro must have been expanded.
@@ -74,7 +75,9 @@ def chain_from_urdf(
 def _only_leaf(tree: UrdfTree, base: str) -> str:
     leaves = tree.leaves(base)
     if len(leaves) != 1:
-        raise tree.error(f"tip: below {base!r} {len(leaves)} links have no children; name one of {listed(leaves)}")
+        raise tree.error(
+            f"tip: below {base!r} {len(leaves)} links have no children; name one of {listed(leaves)}"
+        )
     return leaves[0]
 
 
@@ -100,7 +103,7 @@ def _lay_out(tree: UrdfTree, path: Sequence[Any]) -> tuple[list[Axis], Array, Ar
 
 
 def _joints(tree: UrdfTree, axes: Sequence[Axis], tip: Array) -> list[Joint]:
-    """The chain's joints: each value belongs to its own axis or, where that is not on the chain, to the first it moves."""
+    """The chain's joints: a value belongs to its own axis or, where that is not on the chain, to the first it moves."""
     own = {axis.drive.value: axis for axis in reversed(axes)}
     own.update({axis.joint.name: axis for axis in axes if axis.joint.name == axis.drive.value})
     homes = {value: _home(tree, value, axes) for value in own}
@@ -146,11 +149,15 @@ def _direction(tree: UrdfTree, joint: Any) -> Array:
     """The unit vector of a joint's axis in its own frame."""
     if joint.type not in KINDS:
         kinds = ", ".join(["fixed", *KINDS])
-        raise tree.error(f"joint {joint.name!r} is of type {joint.type!r}; between base and tip it may be {kinds}")
+        raise tree.error(
+            f"joint {joint.name!r} is of type {joint.type!r}; between base and tip it may be {kinds}"
+        )
     axis = _numbers(tree, joint, "axis", [1.0, 0.0, 0.0] if joint.axis is None else joint.axis)
     norm = float(np.linalg.norm(axis))
     if norm == 0.0:
-        raise tree.error(f"joint {joint.name!r}: axis is {axis.tolist()}; expected a direction other than zero")
+        raise tree.error(
+            f"joint {joint.name!r}: axis is {axis.tolist()}; expected a direction other than zero"
+        )
     return axis / norm
 
 
@@ -196,7 +203,9 @@ def _home(tree: UrdfTree, value: str, axes: Sequence[Axis]) -> float:
             ends = [(end - axis.drive.offset) / axis.drive.factor for end in _limits(tree, axis.joint)]
             lower, upper = max(lower, min(ends)), min(upper, max(ends))
     if lower > upper:
-        raise tree.error(f"joint {value!r} and the joints that mimic it have no value within the limits of all")
+        raise tree.error(
+            f"joint {value!r} and the joints that mimic it have no value within the limits of all"
+        )
     return min(max(0.0, lower), upper)
 
 

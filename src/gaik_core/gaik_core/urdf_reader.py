@@ -22,8 +22,8 @@ KINEMATIC = {
     "limit": ("lower", "upper"),
     "mimic": ("joint", "multiplier", "offset"),
 }
-"""What of a joint bears on kinematics. The rest (meshes, inertias, transmissions, …) never reaches the reader, which prints a
-line for each tag it does not know and gives up on some that no kinematics needs."""
+"""What of a joint bears on kinematics. The rest (meshes, inertias, transmissions, …) never reaches the reader, which
+prints a line for each tag it does not know and gives up on some that no kinematics needs."""
 
 REQUIRED = {"axis": "xyz", "parent": "link", "child": "link", "mimic": "joint"}
 
@@ -62,8 +62,14 @@ class UrdfTree:
         """An error that names the source."""
         return UrdfError(f"{self.source}: {message}")
 
+    def check_link(self, what: str, link: str) -> None:
+        """Raise UrdfError where there is no such link."""
+        if link not in self.links:
+            raise self.error(f"{what}: no link {link!r}{_hint(link, self.links)}")
+
     def leaves(self, base: str) -> list[str]:
         """The links at or below `base` that have no children."""
+        self.check_link("base", base)
         parents = {joint.parent for joint in self.joints.values()}
         return [
             link
@@ -73,9 +79,8 @@ class UrdfTree:
 
     def path(self, base: str, tip: str) -> list[Any]:
         """The joints from one link down to another; raises UrdfError where there is no such way."""
-        for what, link in (("base", base), ("tip", tip)):
-            if link not in self.links:
-                raise self.error(f"{what}: no link {link!r}{_hint(link, self.links)}")
+        self.check_link("base", base)
+        self.check_link("tip", tip)
         joints = []
         for joint in self._upward(tip):
             joints.append(joint)
@@ -102,9 +107,8 @@ class UrdfTree:
     def _joints_above(self) -> dict[str, Any]:
         above: dict[str, Any] = {}
         for joint in self.joints.values():
-            for what, link in (("parent", joint.parent), ("child", joint.child)):
-                if link not in self.links:
-                    raise self.error(f"joint {joint.name!r}: {what}: no link {link!r}{_hint(link, self.links)}")
+            self.check_link(f"joint {joint.name!r}: parent", joint.parent)
+            self.check_link(f"joint {joint.name!r}: child", joint.child)
             if joint.child in above:
                 both = f"{above[joint.child].name!r} and {joint.name!r}"
                 raise self.error(f"link {joint.child!r} is the child of two joints, {both}: not a tree")
@@ -156,8 +160,7 @@ def _parse(source: str, content: str | bytes) -> Any:
     try:
         root = ElementTree.fromstring(content)
     except (ElementTree.ParseError, ValueError) as error:
-        unexpanded = "<xacro:" if isinstance(content, str) else b"<xacro:"
-        if unexpanded in content:  # type: ignore[operator]
+        if "<xacro:" in str(content):
             raise _is_xacro(source) from None
         raise UrdfError(f"{source}: not XML: {error}") from None
     if any("xacro" in str(element.tag).partition("}")[0] for element in root.iter()):
@@ -177,7 +180,7 @@ def _is_xacro(source: str) -> UrdfError:
 
 
 def _kinematic_part(source: str, root: ElementTree.Element) -> ElementTree.Element:
-    """A copy with the links' names and of each joint what `KINEMATIC` lists; the first of two equal tags, as urdfdom."""
+    """The links' names and of each joint what `KINEMATIC` lists; of two equal tags the first, as urdfdom does."""
     robot = ElementTree.Element("robot", _kept(root, ("name", "version")))
     for link in root.findall("link"):
         robot.append(ElementTree.Element("link", _kept(link, ("name",))))
@@ -187,13 +190,25 @@ def _kinematic_part(source: str, root: ElementTree.Element) -> ElementTree.Eleme
             element = joint.find(tag)
             if element is None:
                 continue
-            if tag in REQUIRED and REQUIRED[tag] not in element.attrib:
-                name = joint.get("name", "?")
-                raise UrdfError(f"{source}: joint {name!r}: <{tag}> has no attribute {REQUIRED[tag]!r}")
+            _check_attribute(source, joint.get("name", "?"), element)
             # effort and velocity must be there for the reader, and mean nothing here
             unused = {"effort": "0", "velocity": "0"} if tag == "limit" else {}
             copy.append(ElementTree.Element(tag, unused | _kept(element, attributes)))
     return robot
+
+
+def _check_attribute(source: str, joint: str, element: ElementTree.Element) -> None:
+    """Refuse what the reader would stumble over without saying at which joint."""
+    attribute = REQUIRED.get(element.tag)
+    if attribute is not None and attribute not in element.attrib:
+        raise UrdfError(f"{source}: joint {joint!r}: <{element.tag}> has no attribute {attribute!r}")
+    if element.tag == "axis":
+        try:
+            _, _, _ = map(float, element.attrib["xyz"].split())
+        except ValueError:
+            raise UrdfError(
+                f"{source}: joint {joint!r}: axis is {element.attrib['xyz']!r}; expected three numbers"
+            ) from None
 
 
 def _kept(element: ElementTree.Element, attributes: tuple[str, ...]) -> dict[str, str]:
