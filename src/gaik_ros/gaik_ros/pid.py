@@ -17,6 +17,7 @@ from numpy.typing import ArrayLike, NDArray
 
 Array = NDArray[np.float64]
 
+SHORTEST_STEP = 1e-6  # s: a difference over less than this says nothing either
 LONGEST_STEP = 0.1  # s: after a longer pause the error's difference says nothing about its derivative
 
 
@@ -102,9 +103,9 @@ class Pid:
     def step(self, error: Array, dt: float, reference_velocity: Array | float = 0.0) -> Array:
         """The effort (joints,) N·m for `error` (joints,) rad, `dt` s after the last step.
 
-        A `dt` of zero or less changes nothing and gives the last output again.
+        A `dt` of less than a microsecond changes nothing and gives the last output again.
         """
-        if not dt > 0.0:
+        if not dt >= SHORTEST_STEP:
             return self.output
         g = self.gains
         blend, keep = self._decay(dt)
@@ -136,7 +137,7 @@ class Pid:
         if self._decays[0] != dt:
             blend = math.exp(-dt / self._blend_time) if self._blend_time > 0.0 else 0.0
             times = self.gains.filter_time
-            keep = np.where(times > 0.0, np.exp(-dt / np.where(times > 0.0, times, 1.0)), 0.0)
+            keep = np.exp(-dt / np.maximum(times, 1e-12))
             self._decays = (dt, blend, keep)
         return self._decays[1], self._decays[2]
 

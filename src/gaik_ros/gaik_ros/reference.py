@@ -8,6 +8,9 @@ from numpy.typing import ArrayLike, NDArray
 Array = NDArray[np.float64]
 
 
+SHORTEST_STEP = 1e-6  # s: less than this is no time
+
+
 class JointReference:
     """A position that follows its goal on a straight line in joint space, no joint above its speed limit.
 
@@ -51,15 +54,16 @@ class JointReference:
 
     def advance(self, dt: float) -> Array:
         """The position (dof,) after `dt` s; `velocity` is the goal's where it is reached."""
+        if not dt >= SHORTEST_STEP:
+            return self.position
         away = self.goal - self.position
-        distance = np.abs(away)
-        share = self._slow_down(distance / dt) if dt > 0.0 else float(not distance.any())
+        share = self._slow_down(np.abs(away) / dt)
         if share == 1.0:
             self.position = self.goal.copy()
             self.velocity = self._goal_velocity
         else:
             self.position = self.position + share * away
-            self.velocity = share * away / dt if dt > 0.0 else self.velocity
+            self.velocity = share * away / dt
         return self.position
 
     def _slow_down(self, speeds: Array) -> float:
