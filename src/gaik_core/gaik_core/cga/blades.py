@@ -12,15 +12,19 @@ from gaik_core.cga.printing import named_blade
 
 __all__: list[str] = []
 
-_ALIASES = {"I": "e12345", "Ie": "e123"}
+e1, e2, e3, e4, e5 = (wrap(named_blade(name)) for name in ("e1", "e2", "e3", "e4", "e5"))
+e0: Multivector = 0.5 * (e5 - e4)
+einf: Multivector = e4 + e5
+Ie: Multivector = e1 * e2 * e3
+I: Multivector = Ie * e4 * e5  # noqa: E741 - what the field calls it
 
 
 def __getattr__(name: str) -> Multivector:
     try:
-        return wrap(named_blade(_ALIASES.get(name, name)))
+        return wrap(named_blade(name))
     except BladeNameError as error:
         raise AttributeError(f"{error}; or one of e0, einf, I, Ie") from None
 
 
 def __dir__() -> list[str]:
-    return [*NAMES[1:], "e0", "einf", *_ALIASES]
+    return [*NAMES[1:], "e0", "einf", "I", "Ie"]

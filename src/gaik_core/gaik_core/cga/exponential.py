@@ -97,9 +97,10 @@ def log(r: Array) -> Array:
         _Root.of(w + root, sinh_squared + 2.0 * w * root),
         _Root.of(w - root, sinh_squared - 2.0 * w * root),
     )
-    factor = difference[..., None] * quad
+    factor: Array = difference[..., None] * quad
     factor[..., 0] = mean
-    return product(GEOMETRIC, factor, bivector) * _BIVECTOR
+    logarithm: Array = product(GEOMETRIC, factor, bivector) * _BIVECTOR
+    return logarithm
 
 
 def _check_unit_versor(r: Array) -> None:
