@@ -97,15 +97,15 @@ def lap_of(setpoints: Series, path: Path, rate: float, period: float, laps: int)
 def setpoint_numbers(points: Array, path: Path, rate: float, period: float) -> Array:
     """Return the number k (n,) of each setpoint (n, 3) of a path: its position is that of the time k/rate.
 
-    Numbers rise, and the next one is looked for within half a lap, in which no default path passes a point twice
-    at the same place and k.
+    The first is number 0 and numbers rise, so each is looked for in the half lap that follows the one before.
     """
-    lap = path.sample(rate, period)
+    turn = 2.0 * math.pi / (rate * period)
+    ahead = np.arange(max(1, math.floor(0.5 * rate * period)))
     numbers = np.empty(len(points))
     following = 0
     for row, point in enumerate(points):
-        ahead = (following + np.arange(len(lap) // 2 if row else 1)) % len(lap)
-        matches = np.flatnonzero(np.linalg.norm(lap[ahead] - point, axis=1) < MATCH)
+        candidates = path.position(turn * (following + (ahead if row else ahead[:1])))
+        matches = np.flatnonzero(np.linalg.norm(candidates - point, axis=-1) < MATCH)
         if not matches.size:
             raise ValueError(f"setpoint {row} is no point of the path: {point.tolist()} m")
         numbers[row] = following + matches[0]

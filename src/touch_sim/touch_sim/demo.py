@@ -1,0 +1,166 @@
+"""The demo: the twin of a Touch follows a circle and a lemniscate through real ROS 2 nodes, and is measured.
+
+    python -m touch_sim.demo        ros2 run touch_sim demo        make demo
+
+Only this file's own reading of options needs nothing but Python, so that a missing module is said in one line.
+"""
+
+from __future__ import annotations
+
+import argparse
+import math
+import signal
+import sys
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+BAD_OPTION, FAILED, INTERRUPTED = 2, 1, 130
+
+FROM_SOURCE = "-e src/gaik_core -e src/gaik_ros -e src/touch_sim"
+INSTALL = {  # module -> what pip installs it by
+    "rclpy": "'ros-jazzy-rclpy[fastrtps]' ros-jazzy-common-interfaces",
+    "geometry_msgs": "ros-jazzy-common-interfaces",
+    "sensor_msgs": "ros-jazzy-common-interfaces",
+    "diagnostic_msgs": "ros-jazzy-common-interfaces",
+    "std_srvs": "ros-jazzy-common-interfaces",
+    "rcl_interfaces": "ros-jazzy-common-interfaces",
+    "yaml": "PyYAML",
+    "mpl_toolkits": "matplotlib",
+    "gaik_core": FROM_SOURCE,
+    "gaik_ros": FROM_SOURCE,
+    "touch_sim": FROM_SOURCE,
+}
+
+EPILOG = """\
+The error is the distance from the measured tip to the path's point at the same time. The tip has the stamp of its
+message; the path's clock starts at the earliest time that any setpoint tells, since none can be received before it
+is due. The way to the first point, and a rest there, come before the path and do not count.
+
+Arguments after --ros-args go to the nodes: --ros-args -p pid_controller:gains.p:=5.0
+"""
+
+
+def main(args: Sequence[str] | None = None) -> int:
+    """Entry point of the executable; returns the exit code."""
+    arguments = list(sys.argv[1:] if args is None else args)
+    cut = arguments.index("--ros-args") if "--ros-args" in arguments else len(arguments)
+    try:
+        options = _parser().parse_args(arguments[:cut])
+        signal.signal(signal.SIGTERM, _interrupt)
+        return _demonstrate(options, arguments[cut:])
+    except ModuleNotFoundError as missing:
+        name = (missing.name or "").split(".")[0]
+        return _complain(
+            f"Python module {name} is missing; install it with: "
+            f"{sys.executable} -m pip install {INSTALL.get(name, name)}",
+            FAILED,
+        )
+    except KeyboardInterrupt:
+        return _complain("interrupted", INTERRUPTED)
+
+
+def _demonstrate(options: argparse.Namespace, ros_arguments: list[str]) -> int:
+    """Run the demo and write what it gave; returns the exit code."""
+    import rclpy
+    from rclpy.signals import SignalHandlerOptions
+
+    from touch_sim import demo_figures, demo_report
+    from touch_sim.demo_progress import progress_for
+    from touch_sim.demo_run import DemoError, run_demo
+    from touch_sim.suite import SuiteOptions
+
+    paths = ("circle", "lemniscate") if options.path == "both" else (options.path,)
+    try:
+        rclpy.init(args=["demo", *ros_arguments], signal_handler_options=SignalHandlerOptions.NO)
+        names = SuiteOptions.__dataclass_fields__
+        suite = SuiteOptions(**{name: getattr(options, name) for name in names})
+        options.out.mkdir(parents=True, exist_ok=True)
+        results = run_demo(suite, paths, options.laps, progress_for(sys.stderr))
+    except DemoError as reason:
+        return _complain(str(reason), FAILED)
+    except (ValueError, OSError) as reason:
+        return _complain(str(reason), BAD_OPTION)
+    finally:
+        rclpy.try_shutdown()
+    files = [options.out / name for name in ("fig21_path.png", "fig22_joints.png", "demo.json")]
+    demo_figures.draw_paths(results.runs, files[0])
+    demo_figures.draw_joints(results.runs, files[1])
+    demo_report.write_json(results, files[2])
+    print(demo_report.table(results))
+    print(f"\nwritten: {', '.join(map(str, files))}")
+    return 0
+
+
+class _Parser(argparse.ArgumentParser):
+    """Says what is wrong in one line, without the usage before it."""
+
+    def error(self, message: str) -> None:  # type: ignore[override]
+        self.exit(BAD_OPTION, f"{self.prog}: {message} (--help lists the options)\n")
+
+
+def _parser() -> _Parser:
+    parser = _Parser(
+        prog="demo",
+        description="Follow a circle and a lemniscate with the twin of a Touch, on real ROS 2 nodes.",
+        epilog=EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+        allow_abbrev=False,
+    )
+    add = parser.add_argument
+    add("--path", choices=("circle", "lemniscate", "both"), default="both", help="what to follow (both)")
+    add("--laps", type=_within(int, 1, 1000), default=1, help="laps of each path (1)")
+    add("--period", type=_within(float, 0.5, 3600), default=6.3, metavar="S", help="time of a lap in s (6.3)")
+    add(
+        "--setpoint-rate",
+        type=_within(float, 1, 1000),
+        default=100.0,
+        metavar="HZ",
+        help="setpoints a second (100)",
+    )
+    add(
+        "--rate",
+        type=_within(float, 10, 10_000),
+        default=1000.0,
+        metavar="HZ",
+        help="rate of controller and twin (1000)",
+    )
+    add("--feed-forward", action="store_true", help="feed the reference's velocity forward")
+    add("--algebra", default="quaternion", help="quaternion or conformal (quaternion)")
+    add("--rule", default="", help="update rule of the IK node (the node's own default)")
+    add(
+        "--robot",
+        default="touch_device",
+        help="a robot that reaches the paths, or a robot file (touch_device)",
+    )
+    add("--namespace", default="", help="namespace of all nodes (none)")
+    add("--out", type=Path, default=Path("out"), metavar="DIR", help="where to write figures and JSON (out)")
+    return parser
+
+
+def _within(number: Callable[[str], float], low: float, high: float) -> Callable[[str], float]:
+    """Return a reader of numbers from `low` to `high`."""
+    kind = "a whole number" if number is int else "a number"
+
+    def read(text: str) -> float:
+        try:
+            value = number(text)
+        except ValueError:
+            value = math.nan
+        if not low <= value <= high:
+            raise argparse.ArgumentTypeError(f"{text!r}; expected {kind} from {low:g} to {high:g}")
+        return value
+
+    return read
+
+
+def _interrupt(number: int, frame: object) -> None:
+    raise KeyboardInterrupt
+
+
+def _complain(message: str, code: int) -> int:
+    print(f"demo: {message}", file=sys.stderr)
+    return code
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,90 @@
+"""The whole suite with the twin in one process: the four nodes, made with one set of options."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from rclpy.context import Context
+from rclpy.node import Node
+from rclpy.parameter import Parameter
+
+from gaik_core import KinematicChain
+from gaik_ros.ik_node import IkNode
+from gaik_ros.pid_controller import PidController
+from gaik_ros.trajectory_publisher import TrajectoryPublisher
+from touch_sim.simulation import FEED_FORWARD, PERIOD
+from touch_sim.touch_sim_node import TouchSim
+
+Value = bool | int | float | str | list[str]
+
+
+@dataclass(frozen=True)
+class SuiteOptions:
+    """What is set of the nodes, rates in Hz, times in s; all else stays at each node's default.
+
+    With an empty `rule` the IK node's own default stands, learning rate included.
+    """
+
+    robot: str = "touch_device"
+    rate: float = 1000.0
+    setpoint_rate: float = 100.0
+    period: float = PERIOD
+    feed_forward: bool = False
+    algebra: str = "quaternion"
+    rule: str = ""
+    namespace: str = ""
+
+    def parameters(self, joint_names: tuple[str, ...]) -> dict[str, dict[str, Value]]:
+        """Return the parameters of each node by its name."""
+        ik: dict[str, Value] = {"robot": self.robot, "algebra": self.algebra}
+        if self.rule:
+            ik |= {"rule": self.rule, "learning_rate": 0.0}  # 0: the rule's own
+        return {
+            "touch_sim": {"robot": self.robot, "rate": self.rate},
+            "pid_controller": {
+                "dof_names": list(joint_names),
+                "rate": self.rate,
+                "gains.feedforward_gain": FEED_FORWARD if self.feed_forward else 0.0,
+            },
+            "ik_node": ik,
+            "trajectory_publisher": {
+                "rate": self.setpoint_rate,
+                "lap_time": self.period,
+                "autostart": False,
+            },
+        }
+
+
+class Suite:
+    """The four nodes, not yet running; `nodes` is what to run. Raises ValueError for an option a node refuses."""
+
+    def __init__(self, options: SuiteOptions, context: Context | None = None) -> None:
+        self.options = options
+        self.joint_names = tuple(KinematicChain.load(options.robot).joint_names)
+        parameters = options.parameters(self.joint_names)
+        made: list[Node] = []
+        try:
+            for factory, name in (
+                (TouchSim, "touch_sim"),
+                (PidController, "pid_controller"),
+                (IkNode, "ik_node"),
+                (TrajectoryPublisher, "trajectory_publisher"),
+            ):
+                made.append(
+                    factory(
+                        context=context,
+                        namespace=options.namespace,
+                        parameter_overrides=_overrides(parameters[name]),
+                    )
+                )
+        except BaseException:
+            for node in made:
+                node.destroy_node()
+            raise
+        self.nodes: tuple[Node, ...] = tuple(made)
+        self.twin, self.controller, self.ik, self.trajectory = made
+
+
+def _overrides(values: Mapping[str, Value]) -> list[Parameter]:
+    return [Parameter(name, value=value) for name, value in values.items()]
