@@ -7,9 +7,11 @@
 True
 """
 
+from gaik_core.cga import Multivector
 from gaik_core.chain import ALGEBRAS, KinematicChain
 from gaik_core.errors import GaikError
 from gaik_core.joint import Joint
+from gaik_core.quaternion import Quaternion
 from gaik_core.solver import Solution, Solutions, Status, Trace, solve, solve_batch, solve_path
 from gaik_core.targets import Pointing, Pose
 from gaik_core.update_rules import (
@@ -26,6 +28,7 @@ from gaik_core.update_rules import (
     rule_by_name,
 )
 from gaik_core.velocity import gradient_velocity
+from gaik_core.versors import Motor, Rotor, Translator
 
 __version__ = "0.1.0"
 
@@ -41,14 +44,19 @@ __all__ = [
     "KinematicChain",
     "LevenbergMarquardt",
     "Momentum",
+    "Motor",
+    "Multivector",
     "Nesterov",
     "Pointing",
     "Pose",
+    "Quaternion",
     "RMSProp",
+    "Rotor",
     "Solution",
     "Solutions",
     "Status",
     "Trace",
+    "Translator",
     "UpdateRule",
     "gradient_velocity",
     "rule_by_name",

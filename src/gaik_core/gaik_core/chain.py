@@ -9,11 +9,12 @@ from typing import Literal, get_args
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from gaik_core.checks import finite_array, vector
+from gaik_core.checks import array_of, finite, finite_vector
 from gaik_core.errors import GaikError, ShapeError, UnknownNameError
 from gaik_core.joint import Joint
 from gaik_core.kernels import kinematics as kernels
-from gaik_core.packing import pack
+from gaik_core.kernels.limits import project
+from gaik_core.packing import pack, without_limits
 
 Array = NDArray[np.float64]
 Algebra = Literal["quaternion", "conformal"]
@@ -33,8 +34,8 @@ def algebra_code(algebra: str) -> int:
 class KinematicChain:
     """A serial chain of revolute and prismatic joints; never changed after it is made.
 
-    Angles are rad (m for prismatic joints), one for each joint that is not passive. The base frame is the frame of the robot file or of
-    the URDF's base link.
+    Angles are rad (m for prismatic joints), one for each joint that is not passive. The base frame is the frame of the
+    robot file or of the URDF's base link.
 
     Attributes:
         name, description: what it is.
@@ -46,7 +47,8 @@ class KinematicChain:
         axis_names, axis_lower, axis_upper: (axes,) of the angles about the axes.
         coupling, offset: (axes, dof) and (axes,): axis angles = coupling @ angles + offset.
         limited: whether any limit is finite.
-        packed: the arrays the compiled kernels take.
+        reach: no target further than this from the first axis can be reached (m); infinite with unbounded travel.
+        packed, packed_without_limits: the arrays the compiled kernels take.
     """
 
     def __init__(
@@ -78,19 +80,23 @@ class KinematicChain:
         self.dof = len(active)
         self.joint_names = tuple(joint.name for joint in active)
         self.axis_names = tuple(joint.name for joint in self.joints)
-        turn = vector("orientation", orientation, 4)
-        self.packed = pack(self.joints, vector("origin", origin, 3), turn / np.linalg.norm(turn))
-        self.lower, self.upper = self.packed.limits
+        turn = finite_vector("orientation", orientation, 4)
+        self.packed = pack(self.joints, finite_vector("origin", origin, 3), turn / np.linalg.norm(turn))
+        self.packed_without_limits = without_limits(self.packed)
+        axes, couplings, ends, limits, held = self.packed
+        self.lower, self.upper = limits
         self.home = _frozen([joint.home for joint in active])
         self.axis_lower = _frozen([joint.axis_lower for joint in self.joints])
         self.axis_upper = _frozen([joint.axis_upper for joint in self.joints])
         coupling = np.zeros((len(self.joints), self.dof))
-        for axis, joint, factor in self.packed.couplings:
+        for axis, joint, factor in couplings:
             coupling[int(axis), int(joint)] += factor
         self.coupling = _frozen(coupling)
-        self.offset = self.packed.axes[:, 10]
-        self.limited = bool(np.isfinite(self.packed.limits).any() or len(self.packed.held))
-        self._inner_reach, self._outer_reach = _reach(self.joints)
+        self.offset = axes[:, 10]
+        self.limited = bool(np.isfinite(limits).any() or len(held))
+        self.reach = float(ends[11])
+        if len(held) and not project(axes, couplings, limits, held, self.home.copy()):
+            raise GaikError(f"{name}: no joint values within their limits bring every axis within its axis_limits")
 
     def __repr__(self) -> str:
         return f"KinematicChain({self.name!r}, joints={list(self.joint_names)})"
@@ -146,25 +152,25 @@ class KinematicChain:
         return self.geometric_jacobian(angles, algebra)[:3]
 
     def geometric_jacobian(self, angles: ArrayLike, algebra: str = "quaternion") -> Array:
-        """Velocity (m/s) over angular velocity (rad/s) of the tip for each joint's rate, (6, dof), in the base frame."""
+        """Velocity (m/s) above angular velocity (rad/s) of the tip per joint's rate, (6, dof), in the base frame."""
         code = algebra_code(algebra)
-        values = vector("angles", angles, self.dof)
+        values = finite_vector("angles", angles, self.dof)
         n = len(self.joints)
         jacobian = np.empty((6, self.dof))
         axes, couplings, ends, _, _ = self.packed
-        turned, columns, pose = np.empty(n), np.empty((6, n)), np.empty(7)
+        turned, columns, pose = np.empty(n), np.empty((n, 6)), np.empty(7)
         kernels.kinematics(code, axes, couplings, ends, values, turned, columns, pose, jacobian)
         return jacobian
 
     def axis_angles(self, angles: ArrayLike) -> Array:
         """Angles about the axes (…, axes) for joint values (…, dof): C θ + offset."""
-        return finite_array("angles", angles) @ self.coupling.T + self.offset
+        return finite("angles", array_of("angles", angles)) @ self.coupling.T + self.offset
 
     def frames(self, angles: ArrayLike) -> Array:
         """Where each axis stands and, last, the tip: (axes + 1, 3) in m, for drawing the arm."""
-        values = vector("angles", angles, self.dof)
+        values = finite_vector("angles", angles, self.dof)
         points = np.empty((len(self.joints) + 1, 3))
-        kernels.joint_positions(self.packed.axes, self.packed.couplings, self.packed.ends, values, points)
+        kernels.joint_positions(self.packed, values, points)
         return points
 
     def inverse_velocity(
@@ -177,29 +183,18 @@ class KinematicChain:
         """Joint rates (dof,) in rad/s that move the tip at `velocity` (3,) in m/s: see `gaik_core.velocity`."""
         from gaik_core.velocity import damped_pseudo_inverse
 
-        wanted = vector("velocity", velocity, 3)
+        wanted = finite_vector("velocity", velocity, 3)
         return damped_pseudo_inverse(self.jacobian(angles, algebra), damping) @ wanted
-
-    @property
-    def reach(self) -> float:
-        """No target further than this from the first axis can be reached (m); infinite with unbounded travel."""
-        return self._outer_reach
-
-    def proves_unreachable(self, position: Array, tolerance: float = 0.0) -> bool:
-        """Whether the lengths of the links alone rule a position (3,) out: too far, or in the hole around the base."""
-        distance = float(np.linalg.norm(position - self.packed.ends[:3]))
-        return not self._inner_reach - tolerance <= distance <= self._outer_reach + tolerance
 
     def _poses(self, angles: ArrayLike, algebra: str) -> Array:
         """Poses (…, 7) of the tip."""
         code = algebra_code(algebra)
-        values = finite_array("angles", angles)
+        values = finite("angles", array_of("angles", angles))
         if values.ndim not in (1, 2) or values.shape[-1] != self.dof:
             raise ShapeError("angles", np.shape(angles), f"({self.dof},) or (m, {self.dof})")
         many = values.reshape(-1, self.dof)
         result = np.empty((len(many), 7))
-        axes, couplings, ends, _, _ = self.packed
-        kernels.poses(code, axes, couplings, ends, many, result)
+        kernels.poses(code, self.packed, many, result)
         return result.reshape((*values.shape[:-1], 7))
 
 
@@ -224,19 +219,3 @@ def _check_names(joints: Sequence[Joint], active: Sequence[str]) -> None:
             raise GaikError(
                 f"joint {joint.name!r} is passive without a coupling; give it one, or a value of its own"
             )
-
-
-def _reach(joints: Sequence[Joint]) -> tuple[float, float]:
-    """Nearest and furthest the tip can be from the first axis, by the lengths of the links alone (m)."""
-    lengths = [float(np.linalg.norm(joint.link)) for joint in joints]
-    travel = sum(_travel(joint) for joint in joints if joint.kind == "prismatic")
-    outer = sum(lengths) + travel
-    return max(0.0, 2.0 * max(lengths) - outer) if np.isfinite(outer) else 0.0, outer
-
-
-def _travel(joint: Joint) -> float:
-    """The furthest a prismatic joint moves either way (m)."""
-    low, high = joint.axis_lower, joint.axis_upper
-    if not joint.passive and not joint.coupling:
-        low, high = max(low, joint.lower + joint.offset), min(high, joint.upper + joint.offset)
-    return max(abs(low), abs(high))

@@ -1,37 +1,65 @@
-"""Checks of the arrays that users pass in."""
+"""Checks of the arguments that users pass in."""
 
 from __future__ import annotations
+
+import math
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from gaik_core.errors import NotFiniteError, ShapeError
+from gaik_core.errors import GaikError, NotFiniteError, ShapeError
 
 Array = NDArray[np.float64]
 
 
-def finite_array(what: str, value: ArrayLike) -> Array:
-    """`value` as a contiguous array of float64; raises NotFiniteError, or ShapeError where it is no array of numbers."""
+def array_of(what: str, value: ArrayLike) -> Array:
+    """`value` as a contiguous array of float64; raises ShapeError where it is no array of numbers."""
     try:
-        array = np.ascontiguousarray(value, dtype=np.float64)
+        return np.ascontiguousarray(value, dtype=np.float64)
     except (TypeError, ValueError):
-        raise ShapeError(what, np.shape(np.asarray(value, dtype=object)), "an array of numbers") from None
+        raise GaikError(f"{what} is {value!r}; expected an array of numbers") from None
+
+
+def finite(what: str, array: Array) -> Array:
+    """The array itself; raises NotFiniteError."""
     if not np.isfinite(array).all():
         raise NotFiniteError(what, array.tolist())
     return array
 
 
 def vector(what: str, value: ArrayLike, length: int) -> Array:
-    """`value` as an array (length,)."""
-    array = finite_array(what, value)
+    """`value` as an array (length,), not yet known to be finite."""
+    array = array_of(what, value)
     if array.shape != (length,):
         raise ShapeError(what, np.shape(value), f"({length},)")
     return array
 
 
+def finite_vector(what: str, value: ArrayLike, length: int) -> Array:
+    """`value` as a finite array (length,)."""
+    return finite(what, vector(what, value, length))
+
+
 def rows(what: str, value: ArrayLike, length: int) -> Array:
-    """`value` as an array (m, length)."""
-    array = finite_array(what, value)
+    """`value` as a finite array (m, length)."""
+    array = array_of(what, value)
     if array.ndim != 2 or array.shape[1] != length:
         raise ShapeError(what, np.shape(value), f"(m, {length})")
-    return array
+    return finite(what, array)
+
+
+def positive(what: str, value: float) -> float:
+    """`value`, a number above 0 and finite."""
+    try:
+        if 0.0 < value < math.inf:
+            return float(value)
+    except TypeError:
+        pass
+    raise GaikError(f"{what} is {value!r}; expected a number above 0 and finite")
+
+
+def count(what: str, value: int) -> int:
+    """`value`, a whole number of at least 0."""
+    if isinstance(value, bool) or not isinstance(value, int | np.integer) or value < 0:
+        raise GaikError(f"{what} is {value!r}; expected a whole number of at least 0")
+    return int(value)

@@ -16,8 +16,8 @@ Kind = Literal["revolute", "prismatic"]
 class Joint:
     """An axis and the link that follows it, both as they stand when every angle is zero.
 
-    The angle about the axis is ``offset`` + the joint's own value + the sum of ``factor * value`` over ``coupling``. That sum is how
-    the Touch's parallelogram is written (its third axis turns by θ3 - θ2), a URDF's mimic joint, or a belt.
+    The angle about the axis is ``offset`` + the joint's value + the sum of ``factor * value`` over ``coupling``. That
+    sum is how the Touch's parallelogram is written (its third axis turns by θ3 - θ2), a URDF's mimic joint, or a belt.
     """
 
     name: str

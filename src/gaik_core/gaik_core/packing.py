@@ -1,30 +1,19 @@
-"""A chain as the arrays the kernels take (their columns are described in `gaik_core.kernels.kinematics` and `.limits`)."""
+"""A chain as the arrays the kernels take; their columns are described in `gaik_core.kernels.kinematics`."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from gaik_core.joint import Joint
-from gaik_core.kernels.kinematics import PRISMATIC, REVOLUTE
+from gaik_core.kernels.kinematics import PRISMATIC, REVOLUTE, Chain
 
 Array = NDArray[np.float64]
 
 
-class PackedChain(NamedTuple):
-    """What the kernels need to know of a chain; read-only arrays."""
-
-    axes: Array
-    couplings: Array
-    ends: Array
-    limits: Array
-    held: Array
-
-
-def pack(joints: Sequence[Joint], origin: Array, orientation: Array) -> PackedChain:
+def pack(joints: Sequence[Joint], origin: Array, orientation: Array) -> Chain:
     """Arrays of a chain that begins at `origin` and whose tip has `orientation` (w, x, y, z) at zero."""
     axes = np.zeros((len(joints), 11))
     point = origin.copy()
@@ -40,16 +29,23 @@ def pack(joints: Sequence[Joint], origin: Array, orientation: Array) -> PackedCh
         for i, joint in enumerate(joints)
         if np.isfinite(joint.axis_lower) or np.isfinite(joint.axis_upper)
     ]
-    packed = PackedChain(
-        axes=axes,
-        couplings=couplings(joints, [joint.name for joint in active]),
-        ends=np.concatenate([origin, point, orientation]),
-        limits=np.array([[joint.lower for joint in active], [joint.upper for joint in active]]),
-        held=np.array(held, dtype=float).reshape(-1, 3),
+    names = [joint.name for joint in active]
+    packed = (
+        axes,
+        couplings(joints, names),
+        np.concatenate([origin, point, orientation, reach(joints)]),
+        np.array([[joint.lower for joint in active], [joint.upper for joint in active]]),
+        np.array(held, dtype=float).reshape(-1, 3),
     )
     for array in packed:
         array.flags.writeable = False
     return packed
+
+
+def without_limits(packed: Chain) -> Chain:
+    """The same chain with no limit to hold."""
+    axes, coupled, ends, _, _ = packed
+    return axes, coupled, ends, np.empty((2, 0)), np.empty((0, 3))
 
 
 def couplings(joints: Sequence[Joint], names: Sequence[str]) -> Array:
@@ -64,3 +60,18 @@ def couplings(joints: Sequence[Joint], names: Sequence[str]) -> Array:
             if joint.passive or other != joint.name
         ]
     return np.array(rows, dtype=float).reshape(-1, 3)
+
+
+def reach(joints: Sequence[Joint]) -> tuple[float, float]:
+    """Nearest and furthest the tip can be from the first axis, by the lengths of the links alone (m)."""
+    lengths = [float(np.linalg.norm(joint.link)) for joint in joints]
+    outer = sum(lengths) + sum(travel(joint) for joint in joints if joint.kind == "prismatic")
+    return max(0.0, 2.0 * max(lengths) - outer) if np.isfinite(outer) else 0.0, outer
+
+
+def travel(joint: Joint) -> float:
+    """The furthest a prismatic joint moves either way (m)."""
+    low, high = joint.axis_lower, joint.axis_upper
+    if not joint.passive and not joint.coupling:
+        low, high = max(low, joint.lower + joint.offset), min(high, joint.upper + joint.offset)
+    return max(abs(low), abs(high))

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from gaik_core.chain import KinematicChain, algebra_code
-from gaik_core.checks import rows, vector
+from gaik_core.checks import count, finite, positive, rows, vector
 from gaik_core.errors import GaikError, ShapeError
 from gaik_core.kernels import descent as kernels
 from gaik_core.kernels.task import POSITION
@@ -32,7 +32,7 @@ class Status(StrEnum):
     """Held off the target by joint limits."""
 
 
-_STATUS = (Status.CONVERGED, Status.ITERATION_LIMIT, Status.STAGNATED, Status.UNREACHABLE, Status.LIMITED)
+STATUS = (Status.CONVERGED, Status.ITERATION_LIMIT, Status.STAGNATED, Status.UNREACHABLE, Status.LIMITED)
 
 
 class Trace(NamedTuple):
@@ -86,10 +86,8 @@ class Solutions(NamedTuple):
     restarts: NDArray[np.int64] | None = None
 
 
-_NO_LIMITS = np.empty((2, 0))
-_NO_HELD = np.empty((0, 3))
-_NO_TRACE = np.empty((0, 2))
 _ADAM = Adam()
+_NO_TRACE = np.empty((0, 2))
 
 
 def solve(
@@ -131,47 +129,28 @@ def solve(
     Raises:
         GaikError: an argument of the wrong shape, not finite, out of range or unknown; the message names it.
     """
-    code = algebra_code(algebra)
     kind, wanted = pack_target(target)
     angles = vector("start", chain.home if start is None else start, chain.dof).copy()
-    stop = _stop(chain, kind, rule, tolerance, orientation_tolerance, orientation_weight)
-    budget = _count("max_iterations", max_iterations)
-    axes, couplings, ends, bounds, held = chain.packed
-    if not (chain.limited if limits is None else limits):
-        bounds, held = _NO_LIMITS, _NO_HELD
-    unreachable = chain.proves_unreachable(wanted[:3], tolerance)
-    common = (
-        code,
-        axes,
-        couplings,
-        ends,
-        bounds,
-        held,
-        kind,
-        wanted,
-        stop,
-        rule.kernel,
-        rule.settings,
-        budget,
+    stop = (
+        positive("tolerance", tolerance),
+        positive("orientation_tolerance", orientation_tolerance),
+        _weight(chain, kind, orientation_weight),
+        rule.window,
+        count("max_iterations", max_iterations),
     )
-    kept, used = None, 0
-    if restarts and not unreachable:
-        if trace:
-            raise GaikError("trace and restarts exclude each other: a trace is of one descent")
-        starts = random_starts(chain, _count("restarts", restarts), seed)
-        outcome, iterations, error, turn, used = kernels.descend_with_restarts(*common, starts, angles)
-    elif trace:
-        trace_angles, trace_errors = np.empty((budget + 1, chain.dof)), np.empty((budget + 1, 2))
-        outcome, iterations, error, turn = kernels.descend(*common, angles, trace_angles, trace_errors)
-        end = iterations + 1
-        kept = Trace(trace_angles[:end].copy(), trace_errors[:end, 0].copy(), trace_errors[:end, 1].copy())
+    held = chain.limited if limits is None else limits
+    packed = chain.packed if held else chain.packed_without_limits
+    problem = (algebra_code(algebra), packed, kind, wanted, stop, rule.kernel, rule.settings, angles)
+    if trace:
+        return _solve_traced(problem, restarts)
+    used = 0
+    if restarts:
+        starts = random_starts(chain, count("restarts", restarts), seed)
+        status, iterations, error, turn, used = kernels.solve_with_restarts(*problem, starts)
     else:
-        outcome, iterations, error, turn = kernels.descend(*common, angles, _NO_TRACE, _NO_TRACE)
-    if unreachable and outcome != kernels.CONVERGED:
-        outcome = kernels.UNREACHABLE
-    return Solution(
-        angles, error, iterations, outcome == kernels.CONVERGED, _STATUS[outcome], kept, turn, used
-    )
+        status, iterations, error, turn = kernels.solve_once(*problem, _NO_TRACE, _NO_TRACE)
+    _raise_if_not_finite(status, wanted, angles)
+    return Solution(angles, error, iterations, status == kernels.CONVERGED, STATUS[status], None, turn, used)
 
 
 def solve_batch(
@@ -206,32 +185,31 @@ def random_starts(chain: KinematicChain, count: int, seed: int) -> Array:
     return np.random.default_rng(seed).uniform(low, high, (count, chain.dof))
 
 
-def _stop(
-    chain: KinematicChain,
-    kind: int,
-    rule: UpdateRule,
-    tolerance: float,
-    orientation_tolerance: float,
-    orientation_weight: float | None,
-) -> Array:
-    """What ends a descent: tolerance, orientation tolerance, weight, window."""
-    weight = 1.0
-    if kind != POSITION:
-        weight = chain.reach / math.pi if orientation_weight is None else orientation_weight
-    for what, value in (
-        ("tolerance", tolerance),
-        ("orientation_tolerance", orientation_tolerance),
-        ("orientation_weight", weight),
-    ):
-        if not 0.0 < value < math.inf:
-            raise GaikError(f"{what} is {value}; expected a number above 0 and finite")
-    return np.array([tolerance, orientation_tolerance, weight, rule.window])
+def _solve_traced(problem: kernels.Problem, restarts: int) -> Solution:
+    """One descent with every iterate kept."""
+    if restarts:
+        raise GaikError(f"restarts is {restarts}; expected 0 with trace=True, as a trace is of one descent")
+    _, _, _, target, stop, _, _, angles = problem
+    length = stop[-1] + 1
+    trace_angles, trace_errors = np.empty((length, len(angles))), np.empty((length, 2))
+    status, iterations, error, turn = kernels.solve_once(*problem, trace_angles, trace_errors)
+    _raise_if_not_finite(status, target, angles)
+    made = slice(iterations + 1)
+    kept = Trace(trace_angles[made].copy(), trace_errors[made, 0].copy(), trace_errors[made, 1].copy())
+    return Solution(angles, error, iterations, status == kernels.CONVERGED, STATUS[status], kept, turn)
 
 
-def _count(what: str, value: int) -> int:
-    if isinstance(value, bool) or not isinstance(value, int | np.integer) or value < 0:
-        raise GaikError(f"{what} is {value!r}; expected a whole number of at least 0")
-    return int(value)
+def _raise_if_not_finite(status: int, target: Array, start: Array) -> None:
+    if status == kernels.NOT_FINITE:
+        finite("target", target)
+        finite("start", start)
+
+
+def _weight(chain: KinematicChain, kind: int, given: float | None) -> float:
+    """Metres that one radian counts for."""
+    if given is not None:
+        return positive("orientation_weight", given)
+    return 1.0 if kind == POSITION or math.isinf(chain.reach) else chain.reach / math.pi
 
 
 def _gather(chain: KinematicChain, solutions: list[Solution]) -> Solutions:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from gaik_core.checks import vector
+from gaik_core.checks import finite_vector, vector
 from gaik_core.errors import GaikError
 from gaik_core.kernels.task import POINTING, POSE, POSITION
 
@@ -32,7 +32,7 @@ class Pointing:
         """The nine numbers the kernels take."""
         return np.concatenate(
             [
-                vector("position", self.position, 3),
+                finite_vector("position", self.position, 3),
                 _unit("direction", self.direction, 3),
                 _unit("tool_axis", self.tool_axis, 3),
             ]
@@ -55,7 +55,7 @@ class Pose:
         """The seven numbers the kernels take."""
         return np.concatenate(
             [
-                vector("position", self.position, 3),
+                finite_vector("position", self.position, 3),
                 _unit("orientation", self.orientation, 4),
             ]
         )
@@ -74,7 +74,7 @@ def pack_target(target: Target) -> tuple[int, Array]:
 
 
 def _unit(what: str, value: ArrayLike, length: int) -> Array:
-    array = vector(what, value, length)
+    array = finite_vector(what, value, length)
     norm = float(np.linalg.norm(array))
     if norm == 0.0:
         raise GaikError(f"{what} is {array.tolist()}; expected anything but zero")

@@ -9,7 +9,7 @@ import math
 from collections.abc import Callable
 from dataclasses import astuple, dataclass
 from functools import cached_property
-from typing import ClassVar, Literal
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -47,10 +47,11 @@ class UpdateRule:
     def _share(self, *names: str) -> None:
         self._check(names, lambda value: 0.0 <= value < 1.0, "at least 0 and below 1")
 
-    def _check(self, names: tuple[str, ...], holds: Callable[[float], bool], expected: str) -> None:
+    def _check(self, names: tuple[str, ...], holds: Callable[[Any], bool], expected: str) -> None:
         for name in names:
             value = getattr(self, name)
-            if isinstance(value, bool) or not isinstance(value, int | float | np.integer | np.floating) or not holds(value):
+            number = isinstance(value, int | float | np.integer | np.floating) and not isinstance(value, bool)
+            if not (number and holds(value)):
                 raise GaikError(f"{type(self).__name__}: {name} is {value!r}; expected a number {expected}")
 
 
@@ -58,8 +59,8 @@ class UpdateRule:
 class GradientDescent(UpdateRule):
     """θ ← θ + α Jᵀ e (eqs. 34 and 53).
 
-    `learning_rate` is α in rad²/m² for the loss ½ |e|²; with "auto" each step is the best one of the linearised arm, so that no α need
-    be found per robot (Buss 2004).
+    `learning_rate` is α in rad²/m² for the loss ½ |e|²; with "auto" each step is the best one of the linearised arm, so
+    that no α need be found per robot (Buss 2004).
     """
 
     learning_rate: float | Literal["auto"] = "auto"

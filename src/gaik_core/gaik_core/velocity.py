@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from gaik_core.chain import KinematicChain
-from gaik_core.checks import vector
+from gaik_core.checks import finite_vector
 from gaik_core.errors import GaikError
 
 Array = NDArray[np.float64]
@@ -18,8 +18,9 @@ NEAR_SINGULAR = 0.02
 def damped_pseudo_inverse(jacobian: Array, damping: float | None = None) -> Array:
     """Pseudo-inverse (d, r) of a Jacobian (r, d) that stays bounded at singular poses.
 
-    With a `damping` λ > 0 in m, every singular value is inverted as σ / (σ² + λ²) (Wampler 1986). Without, the inverse is exact but for
-    singular values under ε = 0.02 σ_max, inverted as σ / ε², which is continuous and goes to zero (after Maciejewski and Klein 1988).
+    With a `damping` λ > 0 in m, every singular value is inverted as σ / (σ² + λ²) (Wampler 1986). Without, the inverse
+    is exact but for singular values under ε = 0.02 σ_max, inverted as σ / ε², which is continuous and goes to zero
+    (after Maciejewski and Klein 1988).
 
     Raises:
         GaikError: a negative or NaN damping.
@@ -45,6 +46,6 @@ def gradient_velocity(
 
     β = α/Δt makes one step of eq. 34 out of one period Δt. Its argument is a position error, not a velocity.
     """
-    error = vector("target", target, 3) - chain.forward(angles, algebra)
+    error = finite_vector("target", target, 3) - chain.forward(angles, algebra)
     result: Array = beta * (error @ chain.jacobian(angles, algebra))
     return result

@@ -23,14 +23,39 @@ except ImportError:
 
 
 def compiled(kernel: Kernel) -> Kernel:
-    """Compile `kernel` on its first call and keep the machine code on disk; without numba, return it as it is.
+    """Compile `kernel` on its first call and keep the machine code on disk; without numba, return it unchanged.
 
     Division by zero gives inf or nan as in numpy. No fast-math: compiled and plain runs give the same numbers.
     """
+    return _njit(kernel)
+
+
+def inlined(kernel: Kernel) -> Kernel:
+    """`compiled`, for a formula that makes no array: part of each kernel that calls it, counting no references.
+
+    A call between kernels, and counting who holds an array, cost 60 ns: more than a short formula itself.
+    """
+    return _njit(kernel, **_FORMULA)
+
+
+def _njit(kernel: Kernel, **options: bool) -> Kernel:
     if njit is None:
         return kernel
-    result: Kernel = njit(cache=True, error_model="numpy", nogil=True)(kernel)
+    result: Kernel = njit(cache=True, error_model="numpy", nogil=True, **options)(kernel)
     return result
+
+
+def _known(**options: bool) -> dict[str, bool]:
+    """Those of some options that this numba takes; they make code faster, never different."""
+    known = {}
+    for name, value in options.items():
+        with suppress(Exception):  # what numba raises for an option it does not know differs by version
+            njit(**{name: value})(lambda: 0)
+            known[name] = value
+    return known
+
+
+_FORMULA = _known(forceinline=True, _nrt=False)
 
 
 def drop_stale_caches() -> None:

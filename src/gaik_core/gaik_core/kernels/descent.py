@@ -2,85 +2,148 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 
-from gaik_core.kernels.compiled import compiled
-from gaik_core.kernels.kinematics import kinematics
+from gaik_core.kernels.compiled import compiled, inlined
+from gaik_core.kernels.kinematics import Chain, kinematics
 from gaik_core.kernels.limits import blocked_axes, blocked_joints, hold, project
 from gaik_core.kernels.rules import SLOTS, step
 from gaik_core.kernels.task import measure, task_rows
 
 Array = NDArray[np.float64]
 
-CONVERGED, ITERATION_LIMIT, STAGNATED, UNREACHABLE, LIMITED = range(5)
+CONVERGED, ITERATION_LIMIT, STAGNATED, UNREACHABLE, LIMITED, NOT_FINITE = range(6)
 
 IMPROVEMENT = 1e-6
 """A solve stagnates when the loss has not fallen by this share within the rule's window of updates."""
+
+FAR = 10.0
+"""Targets further than this many reaches are pulled in."""
+
+Stop = tuple[float, float, float, int, int]
+"""Tolerance (m), orientation tolerance (rad), weight (m/rad), window and greatest number of updates."""
+
+Problem = tuple[int, Chain, int, Array, Stop, int, Array, Array]
+"""What every solve takes: algebra, chain, kind of target, target, stop, rule, its settings, angles to start from."""
 
 Outcome = tuple[int, int, float, float]
 """Status, updates made, distance left (m), angle left (rad)."""
 
 
+@inlined
+def square(vector: Array) -> float:
+    """|v|²."""
+    total = 0.0
+    for k in range(vector.shape[0]):
+        total += vector[k] * vector[k]
+    return total
+
+
+@inlined
+def copy(source: Array, result: Array) -> None:
+    """Element by element: a slice assignment in a loop costs more than an update."""
+    for k in range(source.shape[0]):
+        result[k] = source[k]
+
+
+@inlined
+def all_finite(vector: Array) -> bool:
+    """Whether no element is NaN or infinite: zero times either is NaN."""
+    total = 0.0
+    for k in range(vector.shape[0]):
+        total += 0.0 * vector[k]
+    return total == 0.0
+
+
+@inlined
+def distance_from_base(chain: Chain, target: Array) -> float:
+    """How far a target is from the first axis (m); scaled, so that 1e308 does not overflow."""
+    ends = chain[2]
+    x, y, z = abs(target[0] - ends[0]), abs(target[1] - ends[1]), abs(target[2] - ends[2])
+    largest = max(x, y, z)
+    if largest == 0.0:
+        return 0.0
+    x, y, z = x / largest, y / largest, z / largest
+    return float(largest * math.sqrt(x * x + y * y + z * z))
+
+
+@compiled
+def unreachable(chain: Chain, target: Array, tolerance: float) -> bool:
+    """Whether the lengths of the links alone rule a target out: too far, or in the hole around the first axis."""
+    distance = distance_from_base(chain, target)
+    return bool(distance > chain[2][11] + tolerance or distance < chain[2][10] - tolerance)
+
+
+@compiled
+def pull_in(chain: Chain, target: Array) -> Array:
+    """The target, or where it is further than FAR reaches, the point that far on the way to it.
+
+    The arm stretches toward either alike, and what is descended stays of a size that floating point can square.
+    """
+    ends, distance = chain[2], distance_from_base(chain, target)
+    furthest = FAR * ends[11]
+    if distance <= furthest:
+        return target
+    near = target.copy()
+    for k in range(3):
+        near[k] = ends[k] + (target[k] - ends[k]) * (furthest / distance)
+    return near
+
+
 @compiled
 def descend(
     algebra: int,
-    axes: Array,
-    couplings: Array,
-    ends: Array,
-    limits: Array,
-    held: Array,
+    chain: Chain,
     kind: int,
     target: Array,
-    stop: Array,
+    stop: Stop,
     rule: int,
     settings: Array,
-    max_iterations: int,
     angles: Array,
     trace_angles: Array,
     trace_errors: Array,
 ) -> Outcome:
     """Move `angles` in place until the error of the target is below its tolerance.
 
-    `stop` is (tolerance m, orientation tolerance rad, weight m/rad, window). `trace_angles` (max_iterations + 1, d) and
-    `trace_errors` (max_iterations + 1, 2) are filled as far as the solve goes; of length 0, they are left alone.
+    `trace_angles` (max_iterations + 1, d) and `trace_errors` (max_iterations + 1, 2) are filled as far as the solve
+    goes; of length 0, they are left alone.
     """
+    tolerance, orientation_tolerance, weight, window, max_iterations = stop
+    axes, couplings, ends, limits, held = chain
     n, joints = axes.shape[0], angles.shape[0]
-    turned, columns, pose = np.empty(n), np.empty((6, n)), np.empty(7)
-    full, error = np.empty((6, joints)), np.empty(task_rows(kind))
-    jacobian = full[: error.shape[0]]
-    state, previous = np.zeros((SLOTS, joints)), angles.copy()
-    limited = limits.shape[1] > 0
+    turned, columns, pose, error = np.empty(n), np.empty((n, 6)), np.empty(7), np.empty(task_rows(kind))
+    jacobian, state = np.empty((error.shape[0], joints)), np.zeros((SLOTS, max(SLOTS, joints)))
+    previous, normal, limited = np.empty(joints), np.empty(joints), limits.shape[1] > 0
     if limited:
         project(axes, couplings, limits, held, angles)
     best, since, iterations = np.inf, 0, 0
     while True:
-        kinematics(algebra, axes, couplings, ends, angles, turned, columns, pose, full)
-        distance, turn = measure(kind, stop[2], target, pose, full, error)
+        kinematics(algebra, axes, couplings, ends, angles, turned, columns, pose, jacobian)
+        distance, turn = measure(kind, weight, target, pose, jacobian, error)
         if iterations < trace_errors.shape[0]:
             trace_angles[iterations] = angles
             trace_errors[iterations, 0], trace_errors[iterations, 1] = distance, turn
-        if distance < stop[0] and turn < stop[1]:
+        if distance < tolerance and turn < orientation_tolerance:
             return CONVERGED, iterations, distance, turn
-        loss = 0.0
-        for row in range(error.shape[0]):
-            loss += error[row] * error[row]
+        loss = square(error)
+        since += 1
         if loss < best * (1.0 - IMPROVEMENT):
             best, since = loss, 0
-        else:
-            since += 1
         blocked = 0
         if limited:
             blocked = blocked_joints(limits, angles, error, jacobian)
-            blocked += blocked_axes(axes, couplings, held, angles, error, jacobian)
-        if since >= stop[3]:
+            blocked += blocked_axes(axes, couplings, held, angles, error, jacobian, normal)
+        if since >= window:
             return LIMITED if blocked > 0 else STAGNATED, iterations, distance, turn
         if iterations >= max_iterations:
             return ITERATION_LIMIT, iterations, distance, turn
-        previous[:] = angles
+        copy(angles, previous)
         step(rule, angles, error, jacobian, state, settings)
-        if not np.isfinite(angles).all():
-            angles[:] = previous
+        if not all_finite(angles):
+            copy(previous, angles)
             return STAGNATED, iterations, distance, turn
         if limited:
             hold(axes, couplings, limits, held, previous, angles)
@@ -88,40 +151,67 @@ def descend(
 
 
 @compiled
-def descend_with_restarts(
+def solve_once(
     algebra: int,
-    axes: Array,
-    couplings: Array,
-    ends: Array,
-    limits: Array,
-    held: Array,
+    chain: Chain,
     kind: int,
     target: Array,
-    stop: Array,
+    stop: Stop,
     rule: int,
     settings: Array,
-    max_iterations: int,
-    starts: Array,
     angles: Array,
-) -> tuple[int, int, float, float, int]:
-    """Descend from `angles`; where that gets stuck, from each row of `starts` in turn, all within one budget of updates.
+    trace_angles: Array,
+    trace_errors: Array,
+) -> Outcome:
+    """`descend`, with UNREACHABLE where the links prove it, and NOT_FINITE where target or start are not.
 
-    Leaves in `angles` the best of all ends and returns its outcome, the updates of all attempts and the number of restarts.
+    The traces are filled as by `descend`; of length 0, they are left alone.
     """
-    no_trace = np.empty((0, 2))
-    attempt = angles.copy()
-    status, total, distance, turn, restarts = ITERATION_LIMIT, 0, np.inf, np.inf, 0
-    for k in range(starts.shape[0] + 1):
-        if k > 0:
-            attempt[:] = starts[k - 1]
-        outcome, iterations, reached, turned = descend(
-            algebra, axes, couplings, ends, limits, held, kind, target, stop, rule, settings,
-            max_iterations - total, attempt, no_trace, no_trace,
-        )  # fmt: skip
-        total, restarts = total + iterations, k
-        if outcome == CONVERGED or reached + stop[2] * turned < distance + stop[2] * turn:
+    if not (all_finite(target) and all_finite(angles)):
+        return NOT_FINITE, 0, np.nan, np.nan
+    near = pull_in(chain, target)
+    status, iterations, distance, turn = descend(
+        algebra, chain, kind, near, stop, rule, settings, angles, trace_angles, trace_errors
+    )
+    if status != CONVERGED and unreachable(chain, target, stop[0]):
+        status = UNREACHABLE
+        distance += distance_from_base(chain, target) - distance_from_base(chain, near)
+    return status, iterations, distance, turn
+
+
+@compiled
+def solve_with_restarts(
+    algebra: int,
+    chain: Chain,
+    kind: int,
+    target: Array,
+    stop: Stop,
+    rule: int,
+    settings: Array,
+    angles: Array,
+    starts: Array,
+) -> tuple[int, int, float, float, int]:
+    """`solve_once`; where that gets stuck, from each row of `starts` in turn, all within one budget of updates.
+
+    Leaves in `angles` the best of all ends; the outcome counts the updates of all attempts, and after it come the
+    restarts.
+    """
+    tolerance, orientation_tolerance, weight, window, budget = stop
+    attempt, no_trace, restarts = angles.copy(), np.empty((0, 2)), 0
+    status, total, distance, turn = solve_once(
+        algebra, chain, kind, target, stop, rule, settings, angles, no_trace, no_trace
+    )
+    while (
+        status not in (CONVERGED, UNREACHABLE, NOT_FINITE) and total < budget and restarts < starts.shape[0]
+    ):
+        attempt[:] = starts[restarts]
+        restarts += 1
+        left = (tolerance, orientation_tolerance, weight, window, budget - total)
+        outcome, iterations, reached, turned = solve_once(
+            algebra, chain, kind, target, left, rule, settings, attempt, no_trace, no_trace
+        )
+        total += iterations
+        if outcome == CONVERGED or reached + weight * turned < distance + weight * turn:
             status, distance, turn = outcome, reached, turned
             angles[:] = attempt
-        if outcome == CONVERGED or total >= max_iterations:
-            break
     return status, total, distance, turn, restarts

@@ -9,16 +9,18 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from gaik_core.kernels.compiled import compiled
+from gaik_core.kernels.compiled import compiled, inlined
 
 Array = NDArray[np.float64]
 
 SWEEPS = 20
+"""Rounds over the held axes before a projection gives up; one is enough unless axes share joints."""
+
 MARGIN = 1e-12
 """An axis within this of its limit (rad) is on it: rounding of a sum of two angles."""
 
 
-@compiled
+@inlined
 def axis_angle(axis: int, axes: Array, couplings: Array, angles: Array) -> float:
     """Offset + C θ of one axis."""
     total = axes[axis, 10]
@@ -28,26 +30,52 @@ def axis_angle(axis: int, axes: Array, couplings: Array, angles: Array) -> float
     return float(total)
 
 
-@compiled
-def turn_axis(axis: int, by: float, couplings: Array, angles: Array) -> None:
-    """Move the joints by as little as turns one axis by an angle."""
-    square = 0.0
-    for k in range(couplings.shape[0]):
-        if int(couplings[k, 0]) == axis:
-            square += couplings[k, 2] * couplings[k, 2]
-    for k in range(couplings.shape[0]):
-        if int(couplings[k, 0]) == axis:
-            angles[int(couplings[k, 1])] += by * couplings[k, 2] / square
+@inlined
+def turn_axis(axis: int, by: float, couplings: Array, limits: Array, angles: Array) -> None:
+    """Turn one axis by an angle: move each of its joints by as little as does it, without crossing its own limit."""
+    for _ in range(couplings.shape[0]):
+        square = 0.0
+        for k in range(couplings.shape[0]):
+            if int(couplings[k, 0]) == axis and has_room(
+                by * couplings[k, 2], int(couplings[k, 1]), limits, angles
+            ):
+                square += couplings[k, 2] * couplings[k, 2]
+        if square == 0.0 or by == 0.0:
+            return
+        turned = 0.0
+        for k in range(couplings.shape[0]):
+            joint, factor = int(couplings[k, 1]), couplings[k, 2]
+            if int(couplings[k, 0]) == axis and has_room(by * factor, joint, limits, angles):
+                before = angles[joint]
+                angles[joint] = min(max(before + by * factor / square, limits[0, joint]), limits[1, joint])
+                turned += factor * (angles[joint] - before)
+        by -= turned
 
 
-@compiled
+@inlined
+def has_room(by: float, joint: int, limits: Array, angles: Array) -> bool:
+    """Whether a joint can move the way of `by` at all."""
+    return bool(angles[joint] < limits[1, joint] if by > 0.0 else angles[joint] > limits[0, joint])
+
+
+@inlined
+def axis_normal(axis: int, couplings: Array, normal: Array) -> None:
+    """Write the direction in joint space that turns one axis: its row of C."""
+    for j in range(normal.shape[0]):
+        normal[j] = 0.0
+    for k in range(couplings.shape[0]):
+        if int(couplings[k, 0]) == axis:
+            normal[int(couplings[k, 1])] += couplings[k, 2]
+
+
+@inlined
 def clamp_joints(limits: Array, angles: Array) -> None:
     """Move each joint onto the limit it has crossed."""
     for j in range(angles.shape[0]):
         angles[j] = min(max(angles[j], limits[0, j]), limits[1, j])
 
 
-@compiled
+@inlined
 def axes_hold(axes: Array, couplings: Array, held: Array, angles: Array) -> bool:
     """Whether every held axis is inside its limits."""
     for h in range(held.shape[0]):
@@ -67,8 +95,7 @@ def project(axes: Array, couplings: Array, limits: Array, held: Array, angles: A
         for h in range(held.shape[0]):
             axis = int(held[h, 0])
             angle = axis_angle(axis, axes, couplings, angles)
-            turn_axis(axis, min(max(angle, held[h, 1]), held[h, 2]) - angle, couplings, angles)
-        clamp_joints(limits, angles)
+            turn_axis(axis, min(max(angle, held[h, 1]), held[h, 2]) - angle, couplings, limits, angles)
     return axes_hold(axes, couplings, held, angles)
 
 
@@ -92,7 +119,7 @@ def hold(axes: Array, couplings: Array, limits: Array, held: Array, previous: Ar
         angles[j] = previous[j] + share * (angles[j] - previous[j])
 
 
-@compiled
+@inlined
 def blocked_joints(limits: Array, angles: Array, error: Array, jacobian: Array) -> int:
     """Take out of the Jacobian the joints that stand on a limit and would descend through it; how many they are."""
     blocked = 0
@@ -103,25 +130,30 @@ def blocked_joints(limits: Array, angles: Array, error: Array, jacobian: Array) 
         for row in range(error.shape[0]):
             down += jacobian[row, j] * error[row]
         if (angles[j] <= limits[0, j] and down < 0.0) or (angles[j] >= limits[1, j] and down > 0.0):
-            jacobian[:, j] = 0.0
+            for row in range(error.shape[0]):
+                jacobian[row, j] = 0.0
             blocked += 1
     return blocked
 
 
-@compiled
+@inlined
 def blocked_axes(
-    axes: Array, couplings: Array, held: Array, angles: Array, error: Array, jacobian: Array
+    axes: Array,
+    couplings: Array,
+    held: Array,
+    angles: Array,
+    error: Array,
+    jacobian: Array,
+    normal: Array,
 ) -> int:
-    """Likewise for held axes: take out the motion of the joints that would turn such an axis further."""
+    """Likewise for held axes: take out the motion that would turn such an axis further; `normal` (d,) is workspace."""
     blocked = 0
-    normal = np.zeros(angles.shape[0])
     for h in range(held.shape[0]):
         axis = int(held[h, 0])
         angle = axis_angle(axis, axes, couplings, angles)
         if held[h, 1] + MARGIN < angle < held[h, 2] - MARGIN:
             continue
-        normal[:] = 0.0
-        turn_axis(axis, 1.0, couplings, normal)
+        axis_normal(axis, couplings, normal)
         turning = 0.0
         for row in range(error.shape[0]):
             for j in range(angles.shape[0]):
@@ -134,7 +166,7 @@ def blocked_axes(
     return blocked
 
 
-@compiled
+@inlined
 def remove_direction(normal: Array, jacobian: Array) -> None:
     """J ← J (I - n nᵀ / nᵀ n)."""
     square = 0.0

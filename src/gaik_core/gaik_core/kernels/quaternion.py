@@ -4,19 +4,19 @@ from __future__ import annotations
 
 import math
 
-from gaik_core.kernels.compiled import compiled
+from gaik_core.kernels.compiled import inlined
 
 Quaternion = tuple[float, float, float, float]
 Vector = tuple[float, float, float]
 
 
-@compiled
+@inlined
 def cross(a: Vector, b: Vector) -> Vector:
     """a × b."""
     return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
 
 
-@compiled
+@inlined
 def multiply(p: Quaternion, q: Quaternion) -> Quaternion:
     """Hamilton's product p q (eq. 2)."""
     return (
@@ -27,20 +27,20 @@ def multiply(p: Quaternion, q: Quaternion) -> Quaternion:
     )
 
 
-@compiled
+@inlined
 def conjugate(q: Quaternion) -> Quaternion:
     """q~ (eq. 7)."""
     return (q[0], -q[1], -q[2], -q[3])
 
 
-@compiled
+@inlined
 def from_axis_angle(axis: Vector, angle: float) -> Quaternion:
     """cos θ/2 + sin θ/2 n, for a unit axis n (eq. 4)."""
     c, s = math.cos(0.5 * angle), math.sin(0.5 * angle)
     return (c, s * axis[0], s * axis[1], s * axis[2])
 
 
-@compiled
+@inlined
 def rotate(q: Quaternion, v: Vector) -> Vector:
     """q v q~ (eq. 6, whose print lost the v), for a unit q: v + 2 w (u × v) + 2 u × (u × v), with q = w + u."""
     u = (q[1], q[2], q[3])
@@ -50,7 +50,7 @@ def rotate(q: Quaternion, v: Vector) -> Vector:
     return (v[0] + 2.0 * (w * t[0] + s[0]), v[1] + 2.0 * (w * t[1] + s[1]), v[2] + 2.0 * (w * t[2] + s[2]))
 
 
-@compiled
+@inlined
 def rotation_vector(q: Quaternion) -> Vector:
     """Axis times angle of the rotation q: twice the logarithm, by the shorter way round."""
     sign = 1.0 if q[0] >= 0.0 else -1.0

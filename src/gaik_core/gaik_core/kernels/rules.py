@@ -1,7 +1,8 @@
 """One update of the angles by each rule: `step(angles, error, jacobian, state, settings)`.
 
-`jacobian` is (r, d) and `error` (r,), with g = Jᵀ e the direction of descent (eqs. 34 and 53). `state` is (SLOTS, d), zero when a solve
-begins; its meaning is the rule's own. `settings` are the numbers of the class in `gaik_core.update_rules` that stands for the kernel.
+`jacobian` is (r, d) and `error` (r,), with g = Jᵀ e the direction of descent (eqs. 34 and 53); a rule may spend them.
+`state` is (SLOTS, d or more), zero when a solve begins; its meaning is the rule's own. `settings` are the numbers of
+the class in `gaik_core.update_rules` that stands for the kernel.
 """
 
 from __future__ import annotations
@@ -11,12 +12,12 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from gaik_core.kernels.compiled import compiled
+from gaik_core.kernels.compiled import inlined
 
 Array = NDArray[np.float64]
 
-SLOTS = 4
-"""Rows of a rule's state; the last one counts updates in its first element."""
+SLOTS = 6
+"""Rows of a rule's state, and its fewest columns: the normal matrix of a pose fits."""
 
 (
     GRADIENT_DESCENT,
@@ -31,7 +32,7 @@ SLOTS = 4
 ) = range(9)
 
 
-@compiled
+@inlined
 def descent_direction(error: Array, jacobian: Array, joint: int) -> float:
     """One element of g = Jᵀ e."""
     total = 0.0
@@ -40,18 +41,30 @@ def descent_direction(error: Array, jacobian: Array, joint: int) -> float:
     return total
 
 
-@compiled
+@inlined
 def gradient_descent(angles: Array, error: Array, jacobian: Array, state: Array, settings: Array) -> None:
     """θ ← θ + α Jᵀ e (eqs. 34 and 53)."""
     for j in range(angles.shape[0]):
         angles[j] += settings[0] * descent_direction(error, jacobian, j)
 
 
-@compiled
+@inlined
 def steepest_descent(angles: Array, error: Array, jacobian: Array, state: Array, settings: Array) -> None:
-    """θ ← θ + α Jᵀ e with α = e·f / f·f, f = J Jᵀ e: the best step of the linearised arm (Buss 2004, Jacobian transpose method)."""
+    """θ ← θ + α Jᵀ e with α = e·f / f·f, f = J Jᵀ e: the best step of the linearised arm (Buss 2004, section 5).
+
+    Where the arm bends away from its linearisation and the loss grows, α is halved, and let grow again as it falls:
+    without that, a stretched arm under an unreachable target swings for ever.
+    """
     for j in range(angles.shape[0]):
         state[0, j] = descent_direction(error, jacobian, j)
+    loss = 0.0
+    for row in range(error.shape[0]):
+        loss += error[row] * error[row]
+    if state[2, 0] > 0.0 and loss > state[2, 0]:
+        state[1, 0] += 1.0
+    else:
+        state[1, 0] = max(0.0, state[1, 0] - 0.5)
+    state[2, 0] = loss
     along, square = 0.0, 0.0
     for row in range(error.shape[0]):
         f = 0.0
@@ -60,11 +73,12 @@ def steepest_descent(angles: Array, error: Array, jacobian: Array, state: Array,
         along += error[row] * f
         square += f * f
     if square > 0.0:
+        alpha = along / square * 0.5 ** state[1, 0]
         for j in range(angles.shape[0]):
-            angles[j] += along / square * state[0, j]
+            angles[j] += alpha * state[0, j]
 
 
-@compiled
+@inlined
 def momentum(angles: Array, error: Array, jacobian: Array, state: Array, settings: Array) -> None:
     """v ← μ v + α g, θ ← θ + v (Polyak 1964)."""
     for j in range(angles.shape[0]):
@@ -72,7 +86,7 @@ def momentum(angles: Array, error: Array, jacobian: Array, state: Array, setting
         angles[j] += state[0, j]
 
 
-@compiled
+@inlined
 def nesterov(angles: Array, error: Array, jacobian: Array, state: Array, settings: Array) -> None:
     """v ← μ v + α g, θ ← θ + μ v + α g: the look-ahead form of Sutskever et al. 2013 with θ at the look-ahead point."""
     for j in range(angles.shape[0]):
@@ -81,7 +95,7 @@ def nesterov(angles: Array, error: Array, jacobian: Array, state: Array, setting
         angles[j] += settings[1] * state[0, j] + step
 
 
-@compiled
+@inlined
 def rmsprop(angles: Array, error: Array, jacobian: Array, state: Array, settings: Array) -> None:
     """s ← ρ s + (1 - ρ) g², θ ← θ + α g / (√s + ε) (Hinton 2012)."""
     for j in range(angles.shape[0]):
@@ -90,44 +104,45 @@ def rmsprop(angles: Array, error: Array, jacobian: Array, state: Array, settings
         angles[j] += settings[0] * g / (math.sqrt(state[0, j]) + settings[2])
 
 
-@compiled
+@inlined
 def adam(angles: Array, error: Array, jacobian: Array, state: Array, settings: Array) -> None:
-    """Algorithm 1 of Kingma and Ba 2015."""
-    state[SLOTS - 1, 0] += 1.0
-    unbias_first = 1.0 - settings[1] ** state[SLOTS - 1, 0]
-    unbias_second = 1.0 - settings[2] ** state[SLOTS - 1, 0]
+    """Algorithm 1 of Kingma and Ba 2015; `state` keeps both moments and 1 - βᵗ of each."""
     for j in range(angles.shape[0]):
         g = descent_direction(error, jacobian, j)
         state[0, j] = settings[1] * state[0, j] + (1.0 - settings[1]) * g
         state[1, j] = settings[2] * state[1, j] + (1.0 - settings[2]) * g * g
+    correct_bias(state, settings)
+    for j in range(angles.shape[0]):
         angles[j] += (
-            settings[0]
-            * (state[0, j] / unbias_first)
-            / (math.sqrt(state[1, j] / unbias_second) + settings[3])
+            settings[0] * (state[0, j] / state[3, 0]) / (math.sqrt(state[1, j] / state[4, 0]) + settings[3])
         )
 
 
-@compiled
+@inlined
 def amsgrad(angles: Array, error: Array, jacobian: Array, state: Array, settings: Array) -> None:
     """Adam with the largest second moment so far (Reddi, Kale and Kumar 2018), its bias corrected as Adam's is."""
-    state[SLOTS - 1, 0] += 1.0
-    unbias_first = 1.0 - settings[1] ** state[SLOTS - 1, 0]
-    unbias_second = 1.0 - settings[2] ** state[SLOTS - 1, 0]
     for j in range(angles.shape[0]):
         g = descent_direction(error, jacobian, j)
         state[0, j] = settings[1] * state[0, j] + (1.0 - settings[1]) * g
         state[1, j] = settings[2] * state[1, j] + (1.0 - settings[2]) * g * g
         state[2, j] = max(state[2, j], state[1, j])
+    correct_bias(state, settings)
+    for j in range(angles.shape[0]):
         angles[j] += (
-            settings[0]
-            * (state[0, j] / unbias_first)
-            / (math.sqrt(state[2, j] / unbias_second) + settings[3])
+            settings[0] * (state[0, j] / state[3, 0]) / (math.sqrt(state[2, j] / state[4, 0]) + settings[3])
         )
 
 
-@compiled
+@inlined
+def correct_bias(state: Array, settings: Array) -> None:
+    """Take 1 - βᵗ, by which the moments fall short after t updates, to its next value: u ← β u + (1 - β)."""
+    state[3, 0] = settings[1] * state[3, 0] + (1.0 - settings[1])
+    state[4, 0] = settings[2] * state[4, 0] + (1.0 - settings[2])
+
+
+@inlined
 def solve_normal(matrix: Array, vector: Array) -> None:
-    """Solve A x = b in place for a symmetric positive definite A, by its Cholesky factor."""
+    """Solve A x = b in place for b (r,) and a symmetric positive definite A, the (r, r) corner of `matrix`."""
     n = vector.shape[0]
     for i in range(n):
         for j in range(i + 1):
@@ -145,46 +160,45 @@ def solve_normal(matrix: Array, vector: Array) -> None:
         vector[i] /= matrix[i, i]
 
 
-@compiled
-def damped_step(angles: Array, error: Array, jacobian: Array, damping: float, relative: float) -> None:
-    """θ ← θ + Jᵀ (J Jᵀ + λ I)⁻¹ e, where λ = damping + relative · mean diagonal of J Jᵀ."""
+@inlined
+def damped_step(
+    angles: Array, error: Array, jacobian: Array, normal: Array, damping: float, relative: float
+) -> None:
+    """θ ← θ + Jᵀ (J Jᵀ + λ I)⁻¹ e, where λ = damping + relative · mean diagonal of J Jᵀ; `error` becomes (…)⁻¹ e."""
     rows, joints = error.shape[0], angles.shape[0]
-    normal = np.empty((rows, rows))
+    trace = 0.0
     for i in range(rows):
         for k in range(i + 1):
             total = 0.0
             for j in range(joints):
                 total += jacobian[i, j] * jacobian[k, j]
             normal[i, k] = total
-    trace = 0.0
-    for i in range(rows):
         trace += normal[i, i]
     if trace == 0.0:  # no joint can move the tip
         return
     for i in range(rows):
         normal[i, i] += damping + relative * trace / rows
-    weighed = error.copy()
-    solve_normal(normal, weighed)
+    solve_normal(normal, error)
     for j in range(joints):
-        angles[j] += descent_direction(weighed, jacobian, j)
+        angles[j] += descent_direction(error, jacobian, j)
 
 
-@compiled
+@inlined
 def damped_least_squares(angles: Array, error: Array, jacobian: Array, state: Array, settings: Array) -> None:
     """A constant damping λ² (Wampler 1986)."""
-    damped_step(angles, error, jacobian, settings[0] * settings[0], 1e-12)
+    damped_step(angles, error, jacobian, state, settings[0] * settings[0], 1e-12)
 
 
-@compiled
+@inlined
 def levenberg_marquardt(angles: Array, error: Array, jacobian: Array, state: Array, settings: Array) -> None:
     """A damping that fades with the loss: λ = c ½ |e|² + a small multiple of J Jᵀ (Sugihara 2011)."""
     square = 0.0
     for row in range(error.shape[0]):
         square += error[row] * error[row]
-    damped_step(angles, error, jacobian, 0.5 * settings[0] * square, settings[1])
+    damped_step(angles, error, jacobian, state, 0.5 * settings[0] * square, settings[1])
 
 
-@compiled
+@inlined
 def step(rule: int, angles: Array, error: Array, jacobian: Array, state: Array, settings: Array) -> None:
     """Make one update by the rule's number."""
     if rule == GRADIENT_DESCENT:

@@ -1,10 +1,10 @@
 """What a solve drives to zero: the error of the tip, and the Jacobian that belongs to it.
 
-The loss is half the squared length of the error; its gradient is -Jᵀ e exactly (eqs. 33 and 53), for each kind of target:
+The loss is half the squared length of the error e; its gradient is -Jᵀ e exactly (eqs. 33 and 53), for each target:
 
-    POSITION   target (3,)    p                 e = p_d - p_f
-    POINTING   target (9,)    p, d, a           and below it w φ, φ the rotation vector that brings the tool axis a onto d
-    POSE       target (7,)    p, quaternion     and below it w φ, φ the rotation vector from the tip's orientation to the target's
+    POSITION   p (3,)             e = p_d - p_f
+    POINTING   p, d, a (9,)       below that w φ, φ the rotation vector that brings the tool axis a onto d
+    POSE       p, quaternion (7,) below that w φ, φ the rotation vector from the tip's orientation to the target's
 
 with w the weight in metres per radian.
 """
@@ -17,20 +17,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaik_core.kernels import quaternion as q
-from gaik_core.kernels.compiled import compiled
+from gaik_core.kernels.compiled import inlined
 
 Array = NDArray[np.float64]
 
 POSITION, POINTING, POSE = 0, 1, 2
 
 
-@compiled
+@inlined
 def task_rows(kind: int) -> int:
     """How many rows error and Jacobian have."""
     return 3 if kind == POSITION else 6
 
 
-@compiled
+@inlined
 def turn_onto(tool: q.Vector, wanted: q.Vector) -> q.Vector:
     """The rotation vector that brings one unit vector onto another; from its opposite, about any axis across it."""
     axis = q.cross(tool, wanted)
@@ -46,14 +46,14 @@ def turn_onto(tool: q.Vector, wanted: q.Vector) -> q.Vector:
     return (scale * axis[0], scale * axis[1], scale * axis[2])
 
 
-@compiled
+@inlined
 def tool_direction(pose: Array, target: Array) -> q.Vector:
     """The tool axis of a POINTING target where the tip now is."""
     orientation = (pose[3], pose[4], pose[5], pose[6])
     return q.rotate(orientation, (target[6], target[7], target[8]))
 
 
-@compiled
+@inlined
 def orientation_error(kind: int, target: Array, pose: Array) -> q.Vector:
     """The rotation vector φ from the tip's orientation to the target's."""
     if kind == POINTING:
@@ -62,11 +62,11 @@ def orientation_error(kind: int, target: Array, pose: Array) -> q.Vector:
     return q.rotation_vector(q.multiply(wanted, q.conjugate((pose[3], pose[4], pose[5], pose[6]))))
 
 
-@compiled
+@inlined
 def measure(
     kind: int, weight: float, target: Array, pose: Array, jacobian: Array, error: Array
 ) -> tuple[float, float]:
-    """Write the error, weigh the Jacobian's lower rows to match, and return the distance (m) and the angle (rad) left."""
+    """Write the error, weigh the Jacobian's lower rows to match; the distance (m) and the angle (rad) left."""
     for row in range(3):
         error[row] = target[row] - pose[row]
     distance = math.sqrt(error[0] * error[0] + error[1] * error[1] + error[2] * error[2])
@@ -83,9 +83,9 @@ def measure(
     return distance, math.sqrt(phi[0] * phi[0] + phi[1] * phi[1] + phi[2] * phi[2])
 
 
-@compiled
+@inlined
 def remove_spin(tool: q.Vector, jacobian: Array) -> None:
-    """Take out of the Jacobian's angular rows the turning about the tool itself, which a POINTING target leaves free."""
+    """Take out of the Jacobian the turning about the tool itself, which a POINTING target leaves free."""
     for joint in range(jacobian.shape[1]):
         spin = tool[0] * jacobian[3, joint] + tool[1] * jacobian[4, joint] + tool[2] * jacobian[5, joint]
         for row in range(3):

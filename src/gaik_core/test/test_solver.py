@@ -1,0 +1,367 @@
+"""Solving: what the paper's corrected experiments give, the promises of Solution, and what must never happen."""
+
+import numpy as np
+import pytest
+from chains import ALGEBRAS, ROBOTS, inside, random_chain, table1_sphere
+
+from gaik_core import (
+    RULES,
+    Adam,
+    GradientDescent,
+    Joint,
+    KinematicChain,
+    LevenbergMarquardt,
+    Pointing,
+    Pose,
+    Status,
+    rule_by_name,
+    solve,
+    solve_batch,
+    solve_path,
+)
+from gaik_core.errors import GaikError, NotFiniteError, ShapeError, UnknownNameError
+from gaik_core.quaternion import rotate
+
+TOUCH, DEVICE = KinematicChain.load("touch"), KinematicChain.load("touch_device")
+PLANAR, ARM3 = KinematicChain.load("planar2"), KinematicChain.load("arm3")
+
+
+@pytest.mark.parametrize("algebra", ALGEBRAS)
+class TestThePaper:
+    """Numbers that were checked independently of this project (the paper's own, corrected)."""
+
+    def descend(self, start, alpha, iterations, algebra):
+        rule = GradientDescent(alpha)
+        target = [0.0292, 0.1267, 0.0]
+        return solve(PLANAR, target, np.radians(start), algebra, rule, 1e-12, iterations)
+
+    def test_section_3_4_with_the_printed_step(self, algebra):
+        end = self.descend([-100, 30], 10.0, 30, algebra)
+        assert end.iterations == 30 and not end.converged and end.status == Status.ITERATION_LIMIT
+        assert end.error == pytest.approx(0.02096, abs=5e-6)
+        assert np.degrees(end.angles) == pytest.approx([16.574, 112.618], abs=5e-4)
+
+    def test_section_3_4_with_the_step_that_gives_the_printed_result(self, algebra):
+        end = self.descend([-100, 30], 50.0, 30, algebra)
+        assert np.degrees(end.angles) == pytest.approx([27.5430, 98.9433], abs=5e-5)
+        assert end.error == pytest.approx(5.9e-5, abs=5e-7)
+
+    @pytest.mark.parametrize(
+        ("start", "end"),
+        [
+            ([-100, 30], [27.5715, 98.9008]),
+            ([-100, -30], [-233.5277, -98.9008]),
+            ([-50, -50], [126.4723, -98.9008]),
+        ],
+    )
+    def test_section_3_4_which_start_leads_where(self, algebra, start, end):
+        found = self.descend(start, 50.0, 5000, algebra)
+        assert np.degrees(found.angles) == pytest.approx(end, abs=1e-4)
+
+    def test_section_5_3_first_test(self, algebra):
+        links = [(0, 0, 0), (0.4, 0, 0), (0, -0.4, 0)]
+        arm = KinematicChain(
+            [Joint(j.name, j.axis, link) for j, link in zip(ARM3.joints, links, strict=True)]
+        )
+        start = np.radians([180.0, 0.0, 90.0])
+        end = solve(arm, [0.2, 0.4, 0.2], start, algebra, GradientDescent(0.5), 1e-3)
+        assert end.iterations == 170
+        exact = solve(arm, [0.2, 0.4, 0.2], start, algebra, GradientDescent(0.5), 1e-8, 5000)
+        assert np.degrees(exact.angles) == pytest.approx([225.0, 73.0256, 194.4775], abs=1e-4)
+
+    def test_table_1(self, algebra):
+        home = np.radians([0.0, 90.0, 0.0])
+        updates = [solve(ARM3, p, home, algebra, Adam(0.05), 5e-3).iterations for p in table1_sphere()]
+        assert np.mean(updates) == pytest.approx(50.3, abs=0.05)
+        assert (min(updates), max(updates)) == (6, 76)
+
+    def test_section_6_2(self, algebra):
+        start = np.radians([57.29, -57.29, 0.0])
+        end = solve(TOUCH, [0.05, 0.05, 0.0], start, algebra, GradientDescent(20.0), 1e-4)
+        assert end.converged and end.iterations == 24
+        zero = solve(TOUCH, [0, 0, 0], start, algebra, GradientDescent(20.0), 1e-8, 5000)
+        assert np.degrees(zero.angles) == pytest.approx([0, 42.11, 31.16], abs=5e-3)
+
+
+@pytest.mark.parametrize("name", RULES)
+def test_both_algebras_take_the_same_way(name):
+    """Iterate by iterate, not at the end: with limits, without, and for every kind of target.
+
+    Not for ever: a rule that swings about its goal, as RMSProp does, doubles any rounding at each swing.
+    """
+    rng = np.random.default_rng(5)
+    rule = rule_by_name(
+        name, 0.02 if name in ("momentum", "nesterov") else None
+    )  # a step at which none diverges
+    arm = random_chain(rng, 7)
+    position, orientation = arm.pose(arm.home + 0.3)
+    direction = rotate(orientation, [0, 0, 1])
+    problems = [
+        (DEVICE, DEVICE.forward(inside(DEVICE, rng, 1)[0])),
+        (TOUCH, TOUCH.forward(rng.uniform(-1, 1, 3))),
+    ]
+    problems += [
+        (arm, target) for target in (position, Pose(position, orientation), Pointing(position, direction))
+    ]
+    for robot, target in problems:
+        ends = [solve(robot, target, None, algebra, rule, 1e-5, 30, trace=True) for algebra in ALGEBRAS]
+        by_quaternions, by_screw_rotors = (end.trace for end in ends)
+        assert by_quaternions.angles.shape == by_screw_rotors.angles.shape
+        assert np.abs(by_quaternions.angles - by_screw_rotors.angles).max() < 1e-9
+
+
+@pytest.mark.parametrize("algebra", ALGEBRAS)
+@pytest.mark.parametrize("robot", ROBOTS)
+class TestSolution:
+    def test_says_the_truth(self, robot, algebra):
+        chain = KinematicChain.load(robot)
+        rng = np.random.default_rng(7)
+        converged = 0
+        for angles in inside(chain, rng, 30):
+            target = chain.forward(angles)
+            end = solve(chain, target, algebra=algebra, rule=LevenbergMarquardt(), tolerance=1e-6)
+            assert end.error == pytest.approx(np.linalg.norm(target - chain.forward(end.angles)), abs=1e-12)
+            assert end.converged == (end.error < 1e-6) == (end.status == Status.CONVERGED)
+            converged += end.converged
+        assert converged >= 15
+
+    def test_trace_holds_every_iterate(self, robot, algebra):
+        chain = KinematicChain.load(robot)
+        target = chain.forward(chain.home + 0.1)
+        end = solve(chain, target, algebra=algebra, trace=True)
+        assert end.trace.angles.shape == (end.iterations + 1, chain.dof)
+        assert end.trace.error.shape == (end.iterations + 1,)
+        assert np.array_equal(end.trace.angles[0], chain.home)
+        assert np.array_equal(end.trace.angles[-1], end.angles)
+        distances = np.linalg.norm(target - chain.forward(end.trace.angles), axis=1)
+        assert np.allclose(end.trace.error, distances, atol=1e-12)
+        without = solve(chain, target, algebra=algebra)
+        assert without.trace is None
+        assert np.array_equal(without.angles, end.angles) and without.iterations == end.iterations
+
+    def test_zero_iterations_where_the_start_is_good(self, robot, algebra):
+        chain = KinematicChain.load(robot)
+        start = chain.home.copy()
+        end = solve(chain, chain.forward(start), start, algebra)
+        assert end.iterations == 0 and end.converged and np.array_equal(end.angles, start)
+        assert end.angles is not start
+
+
+def test_the_start_is_never_changed_nor_wrapped():
+    start = np.array([0.2 + 4 * np.pi, 0.6, 0.6])
+    kept = start.copy()
+    end = solve(TOUCH, [0.03, 0.02, 0.01], start, tolerance=1e-6, rule=LevenbergMarquardt())
+    assert np.array_equal(start, kept)
+    assert end.converged and abs(end.angles[0] - start[0]) < np.pi
+
+
+def test_half_the_squared_distance_is_the_loss():
+    """One update by α: θ + α Jᵀ e, with no factor 2 (eqs. 34 and 53)."""
+    start, target = np.array([0.3, -0.2, 0.4]), np.array([0.05, 0.05, 0.0])
+    one = solve(TOUCH, target, start, rule=GradientDescent(20.0), tolerance=1e-9, max_iterations=1)
+    step = 20.0 * TOUCH.jacobian(start).T @ (target - TOUCH.forward(start))
+    assert np.allclose(one.angles, start + step, atol=1e-15)
+
+
+class TestUnreachable:
+    @pytest.mark.parametrize("rule", [LevenbergMarquardt(), GradientDescent(), Adam(0.05)])
+    def test_too_far_is_proved_and_answered_with_the_nearest(self, rule):
+        base = np.array([0.0, 0.025, -0.17])
+        far = base + np.array([0.1, 0.2, 0.9])
+        end = solve(TOUCH, far, [0.1, 0.5, 1.0], rule=rule, max_iterations=20000)
+        assert end.status == Status.UNREACHABLE and not end.converged
+        assert np.isfinite(end.angles).all()
+        assert end.error == pytest.approx(np.linalg.norm(far - base) - 0.27, rel=0.02)
+
+    def test_in_the_hole_around_the_base(self):
+        arm = KinematicChain([Joint("a", (0, 0, 1), (0.3, 0, 0)), Joint("b", (0, 0, 1), (0.1, 0, 0))])
+        assert solve(arm, [0.05, 0.0, 0.0], [0.1, 0.2]).status == Status.UNREACHABLE
+        assert solve(arm, [0.25, 0.0, 0.0], [0.1, 0.2], rule=LevenbergMarquardt()).converged
+
+    def test_what_lengths_cannot_prove_stagnates(self):
+        end = solve(PLANAR, [0.05, 0.05, 0.05], [0.3, 0.4], rule=LevenbergMarquardt())
+        assert end.status == Status.STAGNATED and end.error == pytest.approx(0.05, abs=1e-5)
+
+    @pytest.mark.parametrize("target", [[1e308, 0, 0], [-1e200, 1e200, 1e-300]])
+    @pytest.mark.parametrize("name", RULES)
+    def test_absurd_targets_end_finite(self, target, name):
+        for chain in (TOUCH, DEVICE, PLANAR):
+            end = solve(chain, target, rule=RULES[name](), max_iterations=300)
+            assert end.status in (Status.UNREACHABLE, Status.STAGNATED) and np.isfinite(end.angles).all()
+
+
+class TestLimits:
+    @pytest.mark.parametrize("name", RULES)
+    def test_hold_at_every_iterate_of_joints_and_axes(self, name):
+        rng = np.random.default_rng(3)
+        for target in rng.uniform(-0.25, 0.25, (40, 3)):
+            end = solve(
+                DEVICE, target, rng.uniform(-2, 3, 3), rule=RULES[name](), max_iterations=80, trace=True
+            )
+            turned = DEVICE.axis_angles(end.trace.angles)
+            assert (end.trace.angles >= DEVICE.lower).all() and (end.trace.angles <= DEVICE.upper).all()
+            assert (turned >= DEVICE.axis_lower - 1e-9).all() and (turned <= DEVICE.axis_upper + 1e-9).all()
+
+    def test_limited_where_only_limits_stand_between(self):
+        beyond = TOUCH.forward([1.3, 0.5, 0.5])
+        end = solve(DEVICE, beyond, rule=LevenbergMarquardt())
+        assert end.status == Status.LIMITED and end.angles[0] == pytest.approx(0.98)
+        assert solve(DEVICE, beyond, rule=LevenbergMarquardt(), limits=False).converged
+
+    def test_reachable_targets_are_found_despite_limits(self):
+        angles = inside(DEVICE, np.random.default_rng(11), 300)
+        ends = [
+            solve(DEVICE, p, rule=LevenbergMarquardt(), tolerance=1e-6, restarts=20)
+            for p in DEVICE.forward(angles)
+        ]
+        assert all(end.converged for end in ends)
+
+
+class TestOrientation:
+    def test_pose_and_pointing_are_met_by_both_algebras(self):
+        rng = np.random.default_rng(2)
+        chain = random_chain(rng, 7)
+        options = {
+            "tolerance": 1e-6,
+            "orientation_tolerance": 1e-6,
+            "rule": LevenbergMarquardt(),
+            "restarts": 20,
+        }
+        for angles in rng.uniform(-2, 2, (10, 7)):
+            position, orientation = chain.pose(angles)
+            for algebra in ALGEBRAS:
+                end = solve(chain, Pose(position, orientation), algebra=algebra, **options)
+                found, turned = chain.pose(end.angles, algebra)
+                assert end.converged and np.allclose(found, position, atol=1e-6)
+                assert abs(turned @ orientation) == pytest.approx(1.0, abs=1e-10)
+
+    def test_a_quaternion_and_its_negative_are_one_orientation(self):
+        chain = random_chain(np.random.default_rng(4), 7)
+        position, orientation = chain.pose(chain.home + 0.2)
+        ends = [
+            solve(chain, Pose(position, q), rule=LevenbergMarquardt()) for q in (orientation, -orientation)
+        ]
+        assert np.allclose(ends[0].angles, ends[1].angles, atol=1e-12)
+
+    @pytest.mark.parametrize("kind", ["pose", "pointing"])
+    def test_the_step_is_along_the_gradient_of_the_loss(self, kind):
+        """Against central differences of ½ (|Δp|² + w² φ²), measured by the solver's own reported errors."""
+        chain = random_chain(np.random.default_rng(8), 6)
+        if kind == "pose":
+            target = Pose([0.2, 0.1, 0.4], [0.5, -0.5, 0.1, 0.7])
+        else:
+            target = Pointing([0.2, 0.1, 0.4], [1.0, 2.0, -1.0], [0.0, 1.0, 1.0])
+
+        def loss(angles):
+            at = solve(chain, target, angles, max_iterations=0, orientation_weight=0.3)
+            return 0.5 * (at.error**2 + (0.3 * at.orientation_error) ** 2)
+
+        start, h = np.full(6, 0.1), 1e-6
+        gradient = [(loss(start + e) - loss(start - e)) / (2 * h) for e in h * np.eye(6)]
+        rule = GradientDescent(1e-3)
+        one = solve(chain, target, start, rule=rule, max_iterations=1, orientation_weight=0.3)
+        assert np.allclose((start - one.angles) / 1e-3, gradient, atol=1e-6)
+
+    def test_pointing_leaves_the_turn_about_the_tool_free(self):
+        chain = random_chain(np.random.default_rng(6), 7)
+        spin = Joint("spin", (0.0, 0.0, 1.0))
+        arm = KinematicChain([*chain.joints, spin])
+        position, _ = arm.pose(np.full(8, 0.3))
+        end = solve(arm, Pointing(position, [0, 0, 1]), np.full(8, 0.1), rule=LevenbergMarquardt())
+        assert end.converged and end.orientation_error < 1e-2
+
+
+class TestManyTargets:
+    def test_path_is_each_solve_started_from_the_one_before(self):
+        targets = TOUCH.forward(np.linspace([0, 0.5, 0.5], [0.5, 0.9, 0.2], 20))
+        path = solve_path(TOUCH, targets, [0, 0.5, 0.5], tolerance=1e-6, rule=LevenbergMarquardt())
+        assert path.converged.all() and path.angles.shape == (20, 3) and path.error.shape == (20,)
+        start = np.array([0, 0.5, 0.5])
+        for target, angles in zip(targets, path.angles, strict=True):
+            end = solve(TOUCH, target, start, tolerance=1e-6, rule=LevenbergMarquardt())
+            assert np.allclose(end.angles, angles, atol=1e-12)
+            start = end.angles
+
+    def test_batch_is_each_solve_by_itself(self):
+        targets = table1_sphere()
+        batch = solve_batch(ARM3, targets)
+        for i in (0, 17, 199):
+            one = solve(ARM3, targets[i])
+            assert np.allclose(batch.angles[i], one.angles, atol=1e-12)
+            assert batch.iterations[i] == one.iterations and batch.status[i] == one.status
+        assert batch.converged.dtype == bool and batch.converged.shape == (200,)
+
+    def test_batch_takes_a_start_for_each(self):
+        starts = np.random.default_rng(0).uniform(0, 1, (5, 3))
+        batch = solve_batch(TOUCH, TOUCH.forward(starts), starts)
+        assert (batch.iterations == 0).all() and np.array_equal(batch.angles, starts)
+
+    def test_none_at_all(self):
+        for many in (solve_batch, solve_path):
+            assert many(TOUCH, np.empty((0, 3))).angles.shape == (0, 3)
+
+
+class TestRestarts:
+    def test_find_what_one_descent_misses_and_are_repeatable(self):
+        rng = np.random.default_rng(1)
+        chain = random_chain(rng, 6)
+        targets = [Pose(*chain.pose(angles)) for angles in rng.uniform(-np.pi, np.pi, (30, 6))]
+        rule = LevenbergMarquardt()
+        alone = [solve(chain, target, rule=rule, tolerance=1e-4).converged for target in targets]
+        ends = [solve(chain, target, rule=rule, tolerance=1e-4, restarts=20) for target in targets]
+        assert sum(alone) < sum(end.converged for end in ends)
+        assert any(end.restarts > 0 for end in ends) and max(end.restarts for end in ends) <= 20
+        again = solve(chain, targets[0], rule=rule, tolerance=1e-4, restarts=20)
+        assert np.array_equal(again.angles, ends[0].angles)
+
+    def test_stay_within_the_budget(self):
+        end = solve(PLANAR, [0.05, 0.05, 0.05], restarts=1000, max_iterations=77, rule=LevenbergMarquardt())
+        assert end.iterations <= 77 and not end.converged
+
+    def test_unreachable_is_not_tried_again(self):
+        assert solve(TOUCH, [9, 9, 9], restarts=5).restarts == 0
+
+
+class TestBadArguments:
+    @pytest.mark.parametrize(
+        ("changes", "error", "message"),
+        [
+            ({"target": [0, 0]}, ShapeError, r"target has shape \(2,\); expected \(3,\)"),
+            ({"target": [0, np.nan, 0]}, NotFiniteError, "target is"),
+            ({"target": "here"}, GaikError, "target is 'here'"),
+            ({"start": [0, 0]}, ShapeError, r"start has shape \(2,\); expected \(3,\)"),
+            ({"start": [0, np.inf, 0]}, NotFiniteError, "start is"),
+            ({"algebra": "octonion"}, UnknownNameError, "known: quaternion, conformal"),
+            ({"tolerance": 0.0}, GaikError, "tolerance is 0.0; expected a number above 0"),
+            ({"tolerance": -1}, GaikError, "tolerance is -1"),
+            ({"tolerance": np.nan}, GaikError, "tolerance is nan"),
+            ({"tolerance": "1"}, GaikError, "tolerance is '1'"),
+            ({"max_iterations": -1}, GaikError, "max_iterations is -1"),
+            ({"max_iterations": 1.5}, GaikError, "max_iterations is 1.5"),
+            ({"restarts": -1}, GaikError, "restarts is -1"),
+            ({"target": Pose([0, 0, 0], [0, 0, 0, 0])}, GaikError, "orientation is"),
+            (
+                {"target": Pose([0, 0, 0]), "orientation_tolerance": 0},
+                GaikError,
+                "orientation_tolerance is 0",
+            ),
+            ({"target": Pointing([0, 0, 0], [0, 0, 0])}, GaikError, "direction is"),
+            ({"trace": True, "restarts": 2}, GaikError, "restarts is 2; expected 0 with trace"),
+            ({"trace": True, "target": [0, np.nan, 0]}, NotFiniteError, "target is"),
+        ],
+    )
+    def test_are_named(self, changes, error, message):
+        arguments = {"target": [0, 0, 0], **changes}
+        with pytest.raises(error, match=message):
+            solve(TOUCH, **arguments)
+
+    @pytest.mark.parametrize("many", [solve_path, solve_batch])
+    def test_of_many_targets_too(self, many):
+        with pytest.raises(ShapeError, match=r"targets has shape \(3,\); expected \(m, 3\)"):
+            many(TOUCH, [0, 0, 0])
+        with pytest.raises(NotFiniteError, match="targets"):
+            many(TOUCH, [[0, 0, np.nan]])
+
+    def test_zero_iterations_are_allowed(self):
+        end = solve(TOUCH, [0.05, 0.05, 0.0], max_iterations=0)
+        assert end.iterations == 0 and end.status == Status.ITERATION_LIMIT
