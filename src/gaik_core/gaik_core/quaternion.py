@@ -39,8 +39,7 @@ def conjugate(q: ArrayLike) -> Array:
 
 def norm(q: ArrayLike) -> Array:
     """|q| = √(q q~), shape `(…)`."""
-    length: Array = np.linalg.norm(components("q", q, 4), axis=-1)
-    return length
+    return _length(components("q", q, 4))
 
 
 def inverse(q: ArrayLike) -> Array:
@@ -57,7 +56,7 @@ def normalise(q: ArrayLike) -> Array:
 def exp(q: ArrayLike) -> Array:
     """e^q = e^w (cos |v| + sin |v| v/|v|), for q = w + v (eq. 5 where q = θ/2 n)."""
     w, v = _scalar_and_vector("q", q)
-    angle = np.linalg.norm(v, axis=-1)
+    angle = _length(v)
     return np.exp(w)[..., None] * _join(np.cos(angle), _sinc(angle)[..., None] * v)
 
 
@@ -68,7 +67,7 @@ def log(q: ArrayLike) -> Array:
     """
     length = _nonzero_norm("q", q)
     w, v = _scalar_and_vector("q", q)
-    sine = np.linalg.norm(v, axis=-1)
+    sine = _length(v)
     angle = np.arctan2(sine, w)
     axis = np.where(sine[..., None] > 0.0, v / np.where(sine > 0.0, sine, 1.0)[..., None], (1.0, 0.0, 0.0))
     return _join(np.log(length), angle[..., None] * axis)
@@ -88,7 +87,7 @@ def rotate(q: ArrayLike, v: ArrayLike) -> Array:
 def from_axis_angle(axis: ArrayLike, angle: ArrayLike) -> Array:
     """cos θ/2 + sin θ/2 n (eq. 4), for the axis `(…, 3)` of any length but zero and the angle `(…)`."""
     axis = components("axis", axis, 3)
-    length = np.linalg.norm(axis, axis=-1, keepdims=True)
+    length = _length(axis)[..., None]
     if not np.all(length > 0.0):
         raise GaikError("axis has the length 0; an axis of rotation needs a direction")
     half = 0.5 * numbers("angle", angle)
@@ -103,7 +102,7 @@ def to_axis_angle(q: ArrayLike) -> tuple[Array, Array]:
     _nonzero_norm("q", q)
     w, v = _scalar_and_vector("q", q)
     v = np.where(w[..., None] < 0.0, -v, v)
-    sine = np.linalg.norm(v, axis=-1)
+    sine = _length(v)
     axis = np.where(sine[..., None] > 0.0, v / np.where(sine > 0.0, sine, 1.0)[..., None], (1.0, 0.0, 0.0))
     return axis, 2.0 * np.arctan2(sine, np.abs(w))
 
@@ -162,6 +161,12 @@ def _scalar_and_vector(what: str, q: ArrayLike) -> tuple[Array, Array]:
 def _join(w: Array, v: Array) -> Array:
     shape = np.broadcast_shapes(w.shape, v.shape[:-1])
     return np.concatenate((np.broadcast_to(w, shape)[..., None], np.broadcast_to(v, (*shape, 3))), axis=-1)
+
+
+def _length(x: Array) -> Array:
+    """√(Σ x²) over the last axis, also where the squares would overflow or vanish."""
+    length: Array = np.hypot.reduce(x, axis=-1)
+    return length
 
 
 def _nonzero_norm(what: str, q: ArrayLike) -> Array:

@@ -112,10 +112,11 @@ class Motor(Multivector):
         return cls.from_rotation_translation(quaternion.from_matrix(matrix[..., :3, :3]), matrix[..., :3, 3])
 
     @staticmethod
-    def exp(
-        bivector: Multivector,
-    ) -> Motor:  # the inverse of `log`; as for every Lie group, a function of the class
-        """exp B for B = -½ (θ L + d einf), a bivector of e12, e13, e23, e1∞, e2∞, e3∞; VersorError for another."""
+    def exp(bivector: Multivector) -> Motor:  # type: ignore[override]
+        """exp B for B = -½ (θ L + d einf), a bivector of e12, e13, e23, e1∞, e2∞, e3∞; VersorError for another.
+
+        A function of the class, as of every Lie group, and the inverse of the method `log`.
+        """
         _check_generator(
             "the exponential of a motor takes a bivector of e12, e13, e23, e1∞, e2∞, e3∞", bivector
         )

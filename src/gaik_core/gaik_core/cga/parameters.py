@@ -96,17 +96,17 @@ def pair_points(pair: Multivector) -> tuple[Array, Array]:
         raise GaikError("the point pair is imaginary: what it comes from does not meet")
     root = Multivector.from_scalar(np.sqrt(np.maximum(squared, 0.0)))
     towards = einf.left_contraction(outer)
-    return down(((outer + root) * towards).grade(1)), down(((outer - root) * towards).grade(1))
+    return down(((outer - root) * towards).grade(1)), down(((outer + root) * towards).grade(1))
 
 
 def flat_point_position(flat: Multivector) -> Array:
     """The position `(…, 3)` of a flat point (einf ∧ a)*."""
     graded_components("a flat point", flat, 3)
-    outer = flat.undual().components
+    outer = flat.undual().components  # e45 - x einf, for e45 = einf ∧ e0
     weight = outer[..., E45, None]
     if np.any(np.abs(weight) <= 1e-15 * np.abs(outer).max(axis=-1, keepdims=True)):
         raise GaikError("the flat point lies at infinity: it has no position")
-    position: Array = 0.5 * (outer[..., _WITH_E4] + outer[..., _WITH_E5]) / weight
+    position: Array = -0.5 * (outer[..., _WITH_E4] + outer[..., _WITH_E5]) / weight
     return position
 
 
