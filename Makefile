@@ -1,0 +1,59 @@
+# gaik: two commands matter, `make demo` and `make test`. `make help` lists the rest.
+
+PYTHON ?= python3
+VENV ?= .venv
+ARGS ?=
+MINUTES ?= 20
+
+BIN := $(VENV)/bin
+PACKAGES := src/gaik_core src/gaik_ros src/touch_sim
+INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt
+DESCRIBED := $(wildcard $(addsuffix /setup.py,$(PACKAGES)) $(addsuffix /setup.cfg,$(PACKAGES)))
+
+.DEFAULT_GOAL := help
+.PHONY: help demo test unit lint reproduce bench clean
+
+help: ## list the targets
+	@awk -F ':.*## ' '/^[a-z]+:.*## / {printf "  make %-10s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
+
+demo: $(VENV)/ready ## watch the twin follow a circle and a lemniscate; options by ARGS="--feed-forward"
+	@$(BIN)/python -m touch_sim.demo $(ARGS)
+
+test: unit lint ## run all tests, then ruff and mypy; options of pytest by ARGS="-k solver"
+
+unit: $(VENV)/ready-to-test
+	@ROS_PYTHON_CHECK_FIELDS=1 $(BIN)/python -m pytest $(PACKAGES) test $(ARGS)
+
+lint: $(VENV)/ready-to-test ## ruff and mypy alone
+	@$(BIN)/ruff check --quiet . && $(BIN)/ruff format --quiet --check . && echo "ruff: clean"
+	@$(BIN)/mypy
+
+reproduce: $(VENV)/ready ## every experiment of the paper, into out/paper
+	@$(BIN)/gaik reproduce $(ARGS)
+
+bench: $(VENV)/ready ## the benchmark against other packages, into docs/benchmarks.md
+	@$(INSTALL) --requirement benchmark/requirements.txt || echo "bench: some packages to compare with are missing and will be skipped"
+	@$(BIN)/python benchmark/run.py $(ARGS)
+
+clean: ## remove what was built and written, .venv too
+	rm -rf $(VENV) out build install log
+	find src test -name __pycache__ -prune -exec rm -rf {} +
+
+# The environment: made once, and again when what it is made from changes.
+
+$(VENV)/ready: requirements.txt constraints.txt $(DESCRIBED)
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null \
+	  || { echo "make: $(PYTHON) is missing or older than 3.11; install it with: sudo apt install python3"; exit 1; }
+	@$(PYTHON) -c 'import venv, ensurepip' 2>/dev/null \
+	  || { echo "make: python3's venv module is missing; install it with: sudo apt install python3-venv"; exit 1; }
+	@echo "Making $(VENV) from requirements.txt: about a minute, 600 MB, once."
+	@test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
+	@$(INSTALL) --requirement requirements.txt
+	@$(INSTALL) --no-build-isolation --no-deps $(addprefix --editable ,$(PACKAGES))
+	@echo "Compiling the kernels: about 20 s, once."
+	@$(BIN)/python -m gaik_core.kernels
+	@touch $@
+
+$(VENV)/ready-to-test: $(VENV)/ready requirements-test.txt
+	@$(INSTALL) --requirement requirements-test.txt
+	@touch $@
