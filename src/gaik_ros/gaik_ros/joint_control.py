@@ -135,7 +135,9 @@ class JointControl:
         if self.mode is Mode.FOLLOWING:
             self._approach.position = reference
             return reference, velocity
-        self.mode = Mode.APPROACHING
+        if self.mode is not Mode.APPROACHING:
+            self._pid.resume()
+            self.mode = Mode.APPROACHING
         self._approach.aim(reference)
         position = self._approach.advance(dt)
         if self._approach.arrived:

@@ -1,4 +1,4 @@
-"""Quality of service: one profile for each topic, and the reason for it. Everything is volatile, newest last."""
+"""Quality of service: one profile for each topic, and the reason for it. All are volatile and keep the last few."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ def _profile(depth: int, reliability: ReliabilityPolicy) -> QoSProfile:
 
 _RELIABLE, _BEST_EFFORT = ReliabilityPolicy.RELIABLE, ReliabilityPolicy.BEST_EFFORT
 
-SETPOINT = _profile(1, _RELIABLE)
+SETPOINT = _profile(100, _RELIABLE)
 JOINT_REFERENCE = _profile(1, _RELIABLE)
 JOINT_STATES = _profile(1, _RELIABLE)
 JOINT_STATES_SUBSCRIPTION = _profile(1, _BEST_EFFORT)
@@ -46,7 +46,8 @@ TOPICS = (
         "geometry_msgs/msg/Point",
         SETPOINT,
         SETPOINT,
-        "One sent once by hand must arrive, and `ros2 topic pub` offers reliable. Depth 1: the newest wins. "
+        "One sent once by hand must arrive, and `ros2 topic pub` offers reliable. The newest wins, in the node and "
+        "not in the middleware, so that the superseded ones are counted: depth for a burst. "
         "Volatile: a setpoint from before a node's start must not move the arm at its start.",
     ),
     Topic(

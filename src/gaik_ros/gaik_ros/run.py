@@ -115,12 +115,38 @@ def running(nodes: Sequence[Node], context: Context | None = None) -> Iterator[R
         raise failures[0]
 
 
+class StopRequest:
+    """A wish to stop, which may come before there is anything to stop."""
+
+    def __init__(self) -> None:
+        self._made = False
+        self._runner: Runner | None = None
+
+    def make(self) -> None:
+        """Ask for the stop."""
+        self._made = True
+        if self._runner is not None:
+            self._runner.stop()
+
+    def serve(self, runner: Runner) -> None:
+        """Stop `runner` when asked to, or now if that has been."""
+        self._runner = runner
+        if self._made:
+            runner.stop()
+
+
 def spin_together(nodes: Sequence[Node], context: Context | None = None) -> None:
     """Run `nodes` in this thread until SIGINT, SIGTERM or the context's shutdown, then destroy them."""
+    request = StopRequest()
+    with stopped_by_signals(request.make):
+        _spin(nodes, context, request)
+
+
+def _spin(nodes: Sequence[Node], context: Context | None, request: StopRequest) -> None:
     runner = Runner(nodes, context)
+    request.serve(runner)
     try:
-        with stopped_by_signals(runner.stop):
-            runner.spin()
+        runner.spin()
     finally:
         runner.destroy()
 
@@ -148,20 +174,27 @@ def run(factory: Callable[[], Node], args: Sequence[str] | None = None) -> int:
     A mistake in the arguments, parameters or names gives one line on stderr and the exit code 2.
     """
     arguments = list(sys.argv if args is None else [sys.argv[0], *args])
-    try:
-        # rclpy's own signal handlers would shut the context down under a loop that is publishing.
-        rclpy.init(args=arguments, signal_handler_options=SignalHandlerOptions.NO)
-        stray = remove_ros_args(arguments)[1:]
-        if stray:
-            raise ValueError(f"unknown argument {stray[0]}; ROS arguments follow --ros-args")
-        spin_together([factory()])
-    except KeyboardInterrupt:
-        return 0  # Ctrl-C before the node was up
-    except (ValueError, NameValidationException, *_ROS_ARGUMENT_ERRORS) as error:
-        return _complain(error)
-    finally:
-        rclpy.try_shutdown()
+    request = StopRequest()
+    with stopped_by_signals(request.make):
+        try:
+            # rclpy's own signal handlers would shut the context down under a loop that is publishing.
+            rclpy.init(args=arguments, signal_handler_options=SignalHandlerOptions.NO)
+            _refuse_stray(arguments)
+            node = factory()
+        except (ValueError, NameValidationException, *_ROS_ARGUMENT_ERRORS) as error:
+            rclpy.try_shutdown()
+            return _complain(error)
+        try:
+            _spin([node], None, request)
+        finally:
+            rclpy.try_shutdown()
     return 0
+
+
+def _refuse_stray(arguments: Sequence[str]) -> None:
+    stray = remove_ros_args(arguments)[1:]
+    if stray:
+        raise ValueError(f"unknown argument {stray[0]}; ROS arguments follow --ros-args")
 
 
 def _complain(error: Exception) -> int:

@@ -26,7 +26,8 @@ class Trajectory:
 
     def looped(self, time: float) -> Array:
         """The position at `time` s of an endless repetition."""
-        return self.position((time + EARLY) % self.lap)
+        folded = time % self.lap
+        return self.position(folded if self.lap - folded > EARLY else 0.0)
 
     def once(self, time: float) -> Array:
         """The position at `time` s of a single run, which stays at its end."""

@@ -1,0 +1,99 @@
+"""trajectory_publisher over real rclpy: what it sends, when it starts and stops."""
+
+import time
+
+import numpy as np
+import pytest
+from ros_bench import Bench, overrides, wait_until
+from std_srvs.srv import Trigger
+
+from gaik_core.paths import Circle, Lemniscate
+from gaik_ros.run import running
+from gaik_ros.trajectory_publisher import TrajectoryPublisher
+
+
+@pytest.fixture
+def start(context):
+    blocks = []
+
+    def build(**values):
+        bench = Bench(context)
+        node = TrajectoryPublisher(context=context, parameter_overrides=overrides(autostart=False, **values))
+        block = running([bench, node], context)
+        block.__enter__()
+        blocks.append(block)
+        wait_until(
+            lambda: bench.count_publishers("setpoint") >= 2 and node._publisher.get_subscription_count()
+        )
+        return bench, node
+
+    yield build
+    for block in blocks:
+        block.__exit__(None, None, None)
+
+
+def heard(bench):
+    return np.array([(m.x, m.y, m.z) for m in bench.setpoints])
+
+
+def trigger(bench, name):
+    answer = bench.call(f"trajectory_publisher/{name}", Trigger.Request())
+    assert answer.success
+    return answer.message
+
+
+@pytest.mark.parametrize(("name", "path"), [("circle", Circle()), ("lemniscate", Lemniscate())])
+def test_one_lap_is_sent_point_by_point_and_ends_where_it_began(start, name, path):
+    bench, node = start(path=name, lap_time=1.0, loop=False)
+    assert not bench.setpoints
+    trigger(bench, "start")
+    wait_until(lambda: not node._running)
+    wait_until(lambda: len(bench.setpoints) == node._sent)
+    points = heard(bench)
+    assert len(points) + node.loop.schedule.skipped == 101
+    np.testing.assert_allclose(points[0], path.position(0.0), atol=1e-12)
+    np.testing.assert_allclose(points[-1], path.position(0.0), atol=1e-12)
+    exact = path.position(2 * np.pi * np.arange(101) / 100)
+    assert all(np.linalg.norm(exact - point, axis=1).min() < 1e-9 for point in points)
+
+
+def test_stop_stops_and_start_begins_anew(start):
+    bench, _ = start()
+    trigger(bench, "start")
+    wait_until(lambda: len(bench.setpoints) > 20)
+    assert trigger(bench, "stop") == "stopped"
+    time.sleep(0.1)
+    count = len(bench.setpoints)
+    time.sleep(0.3)
+    assert len(bench.setpoints) == count
+    assert trigger(bench, "stop") == "it was not running"
+    trigger(bench, "start")
+    wait_until(lambda: len(bench.setpoints) > count)
+    np.testing.assert_allclose(heard(bench)[count], Circle().position(0.0), atol=1e-12)
+
+
+def test_points_come_from_a_file_as_they_stand(start, tmp_path):
+    file = tmp_path / "points.csv"
+    points = np.random.default_rng(0).uniform(-0.05, 0.05, (20, 3))
+    file.write_text("x,y,z\n" + "\n".join(",".join(map(repr, row)) for row in points.tolist()))
+    bench, node = start(path="points", file=str(file), loop=False, rate=50)
+    trigger(bench, "start")
+    wait_until(lambda: not node._running and len(bench.setpoints) == node._sent)
+    if node.loop.schedule.skipped == 0:
+        np.testing.assert_array_equal(heard(bench), points)
+    np.testing.assert_array_equal(heard(bench)[[0, -1]], points[[0, -1]])
+
+
+def test_a_change_of_path_is_refused_whole_where_the_file_is_bad(start, tmp_path):
+    bench, node = start()
+    refused = bench.change(
+        "trajectory_publisher", path="points", file=str(tmp_path / "none.csv"), radius=0.01
+    )
+    assert not refused.successful
+    assert "none.csv" in refused.reason
+    assert (node.values.path, node.values.radius) == ("circle", 0.05)
+    assert not bench.change("trajectory_publisher", centre=[0.0, 1.0]).successful
+    assert bench.change("trajectory_publisher", path="lemniscate", half_width=0.05).successful
+    trigger(bench, "start")
+    wait_until(lambda: bench.setpoints)
+    np.testing.assert_allclose(heard(bench)[0], [0.05, 0.0, 0.0], atol=1e-12)
