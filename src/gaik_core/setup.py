@@ -16,12 +16,19 @@ setup(
     ],
     # The oldest versions are Ubuntu 24.04's, which a ROS 2 Jazzy desktop has.
     install_requires=["numpy>=1.26", "numba>=0.58", "PyYAML>=6", "tqdm>=4.66", "urdf-parser-py>=0.0.4"],
-    extras_require={"figures": ["matplotlib>=3.6"], "test": ["pytest"]},
+    extras_require={"figures": ["matplotlib>=3.6"], "completion": ["argcomplete>=3.1"], "test": ["pytest"]},
     python_requires=">=3.11",
     zip_safe=True,
     maintainer="The gaik developers",
     maintainer_email="developers@gaik.dev",
     description="Inverse kinematics in quaternion algebra and in conformal geometric algebra.",
     license="Apache-2.0",
-    entry_points={"console_scripts": []},
+    entry_points={
+        "console_scripts": ["gaik = gaik_core.cli.main:main"],
+        "gaik.commands": [
+            "reproduce = gaik_core.cli.reproduce:COMMAND",
+            "robots = gaik_core.cli.robots:COMMAND",
+            "solve = gaik_core.cli.solve:COMMAND",
+        ],
+    },
 )
