@@ -27,6 +27,8 @@ TOPICS: dict[str, type] = {
     "tip": PointStamped,
     "ik_node/status": DiagnosticStatus,
 }
+FAST = ("joint_states", "tip")
+"""A thousand a second, each with its stamp: taken at the least cost."""
 
 Array = NDArray[np.float64]
 Raw = tuple[int, bytes]
@@ -38,15 +40,19 @@ class Recorder:
     def __init__(self, node: Node) -> None:
         self._clock = node.get_clock()
         self._raw: dict[str, list[Raw]] = {topic: [] for topic in TOPICS}
-        profile = QoSProfile(depth=1000, reliability=ReliabilityPolicy.RELIABLE)
         for topic, message_type in TOPICS.items():
+            reliability = ReliabilityPolicy.BEST_EFFORT if topic in FAST else ReliabilityPolicy.RELIABLE
+            profile = QoSProfile(depth=1000, reliability=reliability)
             node.create_subscription(message_type, topic, self._keeper(topic), profile, raw=True)
 
     def _keeper(self, topic: str) -> Callable[[bytes], None]:
         def keep(raw: bytes) -> None:
             self._raw[topic].append((self._clock.now().nanoseconds, raw))
 
-        return keep
+        def keep_stamped(raw: bytes) -> None:
+            self._raw[topic].append((0, raw))
+
+        return keep_stamped if topic in FAST else keep
 
     def take(self) -> Recording:
         """Return what was received since the last `take`, and begin anew."""
@@ -67,7 +73,7 @@ class Recording:
     """Messages as they were received, to be read when no loop is disturbed by it."""
 
     def __init__(self, raw: Mapping[str, Sequence[Raw]]) -> None:
-        """`raw` has for each topic the times of receipt in ns and the messages' bytes."""
+        """`raw` has for each topic the times of receipt in ns (0 for the fast ones) and the messages' bytes."""
         self._raw = raw
 
     def setpoints(self) -> Series:

@@ -40,13 +40,12 @@ class SuiteOptions:
         ik: dict[str, Value] = {"robot": self.robot, "algebra": self.algebra}
         if self.rule:
             ik |= {"rule": self.rule, "learning_rate": 0.0}  # 0: the rule's own
+        pid: dict[str, Value] = {"dof_names": list(joint_names), "rate": self.rate}
+        if self.feed_forward:
+            pid |= {"gains.feedforward_gain": FEED_FORWARD}
         return {
             "touch_sim": {"robot": self.robot, "rate": self.rate},
-            "pid_controller": {
-                "dof_names": list(joint_names),
-                "rate": self.rate,
-                "gains.feedforward_gain": FEED_FORWARD if self.feed_forward else 0.0,
-            },
+            "pid_controller": pid,
             "ik_node": ik,
             "trajectory_publisher": {
                 "rate": self.setpoint_rate,
