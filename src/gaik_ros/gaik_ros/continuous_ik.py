@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import StrEnum
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -66,7 +67,7 @@ class ContinuousIk:
         """As for `gaik_core.solve`; `tolerance` in m."""
         self.chain = chain
         self._algebra = algebra
-        self._options = {
+        self._options: dict[str, Any] = {
             "algebra": algebra,
             "rule": rule,
             "tolerance": tolerance,

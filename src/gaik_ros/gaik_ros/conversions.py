@@ -30,8 +30,8 @@ def point_to_array(point: Point) -> Array:
 
 def array_to_point(values: ArrayLike) -> Point:
     """A Point from (3,), m."""
-    x, y, z = values
-    return Point(x=float(x), y=float(y), z=float(z))
+    x, y, z = np.asarray(values, dtype=np.float64).tolist()
+    return Point(x=x, y=y, z=z)
 
 
 def joint_values(message: JointState, names: Sequence[str], field: str = "position") -> Array:

@@ -104,17 +104,16 @@ class HealthReporter:
         """`checks` by the name of the part; `loop` adds the part "loop"."""
         self._node = node
         self._checks = dict(checks or {})
-        self._loop = loop
         if loop is not None:
-            self._checks["loop"] = lambda: self._loop_health(values)
+            self._checks["loop"] = lambda: self._loop_health(loop, values)
         self._publisher = node.create_publisher(DiagnosticArray, "/diagnostics", qos.DIAGNOSTICS)
         self._steady = Clock(clock_type=ClockType.STEADY_TIME)
         self._timer = node.create_timer(1.0, self.report, clock=self._steady)
         self.last_loop: PeriodReport | None = None
 
-    def _loop_health(self, values: ParameterSet) -> Health:
-        self.last_loop = self._loop.periods.take()
-        return loop_health(self.last_loop, self._loop.rate, values)
+    def _loop_health(self, loop: DeadlineLoop, values: ParameterSet) -> Health:
+        self.last_loop = loop.periods.take()
+        return loop_health(self.last_loop, loop.rate, values)
 
     def report(self) -> None:
         """Publish now."""

@@ -26,15 +26,12 @@ from gaik_ros.deadline_loop import DeadlineLoop
 from gaik_ros.health import LOOP_PARAMETERS, OK, WARN, Health, HealthReporter, worst
 from gaik_ros.parameters import Parameter, ParameterSet, ParameterTable
 from gaik_ros.periods import Percentiles, TimeWindow
-from gaik_ros.reference import JointReference
 from gaik_ros.run import run
-from gaik_ros.setpoint_motion import SetpointMotion
+from gaik_ros.setpoint_follower import LATCH, SETPOINT_MODES, FollowerSettings, SetpointFollower
 from gaik_ros.verdict import Verdict, describe, verdict_message
 from gaik_ros.watch import Watch
 
 Array = NDArray[np.float64]
-
-LATCH, STREAM = "latch", "stream"
 
 TABLE = ParameterTable(
     "ik_node",
@@ -61,7 +58,7 @@ TABLE = ParameterTable(
             LATCH,
             "",
             "what the last setpoint means when no more come: it is carried out, or the arm stops",
-            choices=(LATCH, STREAM),
+            choices=SETPOINT_MODES,
         ),
         Parameter("setpoint_timeout", 0.25, "s", "age of a setpoint at which a stream is dead", 0.001),
         Parameter("setpoint_bound", 10.0, "m", "a coordinate beyond this is refused as absurd", 0.001),
@@ -89,6 +86,12 @@ def ik_of(chain: KinematicChain, values: ParameterSet) -> ContinuousIk:
     return ContinuousIk(chain, values.algebra, rule, values.tolerance, values.max_iterations)
 
 
+def settings_of(chain: KinematicChain, values: ParameterSet) -> FollowerSettings:
+    """The FollowerSettings from the parameters. ParameterError: limits of another number of joints."""
+    limit = values.per_joint("max_joint_speed", chain.joint_names)
+    return FollowerSettings(limit, values.setpoint_mode, values.setpoint_timeout)
+
+
 class IkNode(Node):
     """setpoint in, joint_reference and `~/status` out; `~/solve_from_here`."""
 
@@ -97,30 +100,22 @@ class IkNode(Node):
         self._lock = threading.Lock()  # callbacks aim the reference that the loop's thread advances
         self.values = TABLE.declare(self, self._configure)
         self.chain = KinematicChain.load(self.values.robot)
+        ik = ik_of(self.chain, self.values)
+        ik.solve(self.chain.forward(self.chain.home) + 0.01, self.chain.home)  # compiles the kernels
+        settings = settings_of(self.chain, self.values)
+        self._follower = SetpointFollower(ik, settings, 1.0 / self.values.rate)
         self._names = list(self.chain.joint_names)
-        self._ik = ik_of(self.chain, self.values)
-        self._ik.solve(self.chain.forward(self.chain.home) + 0.01, self.chain.home)  # compiles the kernels
-        self.values.per_joint("max_joint_speed", self._names)
-        self._forget()
-        self._connect()
-        self.loop = DeadlineLoop(self.values.rate, self._tick)
-        self.health = HealthReporter(
-            self, self.values, self.loop, {"setpoints": self._setpoint_health, "topics": self._watch.health}
-        )
-
-    def _forget(self) -> None:
-        """The state of a node that has heard nothing."""
         self._received = self._solved = self._superseded = 0
         self._newest: _Setpoint | None = None  # not answered yet
         self._setpoint: _Setpoint | None = None  # the last answered
         self._told_waiting = 0  # sequence of the last setpoint said to be waiting
         self._raw_state: tuple[bytes, float] | None = None
-        self._motion = SetpointMotion()
-        self._angles: Array | None = None  # the last answer: where the next solve starts
-        self._reference: JointReference | None = None
-        self._published = 0.0  # s, when the reference was advanced and published last
-        self._stream_dead = False
         self._solve_times = TimeWindow()
+        self._connect()
+        self.loop = DeadlineLoop(self.values.rate, self._tick)
+        self.health = HealthReporter(
+            self, self.values, self.loop, {"setpoints": self._setpoint_health, "topics": self._watch.health}
+        )
 
     def _connect(self) -> None:
         self._watch = Watch(self)
@@ -138,16 +133,13 @@ class IkNode(Node):
         self.create_service(Trigger, "~/solve_from_here", self._on_solve_from_here)
 
     def _configure(self, values: ParameterSet) -> None:
-        ik = ik_of(self.chain, values)
-        limit = values.per_joint("max_joint_speed", self._names)
+        ik, settings = ik_of(self.chain, values), settings_of(self.chain, values)
         with self._lock:
-            self._ik = ik
-            if self._reference is not None:
-                self._reference.set_speed_limit(limit)
+            self._follower.configure(ik, settings)
 
     def _on_state(self, raw: bytes) -> None:
         self._raw_state = (raw, time.monotonic())
-        if self._newest is not None and self._reference is None:
+        if self._newest is not None and not self._follower.started:
             self._answer()
 
     def _on_setpoint(self, message: Point) -> None:
@@ -156,12 +148,13 @@ class IkNode(Node):
         if not (np.abs(position) <= self.values.setpoint_bound).all():  # false for NaN too
             self._refuse(position)
             return
-        if self._newest is not None:
+        superseded = self._newest is not None
+        self._newest = _Setpoint(position, self._received, time.monotonic())
+        if superseded:
             self._superseded += 1
-        else:
+        elif self.executor is not None:
             # Answered after the messages that are already here, so that a flood does not delay the newest.
             self.executor.create_task(self._answer)
-        self._newest = _Setpoint(position, self._received, time.monotonic())
 
     def _refuse(self, position: Array) -> None:
         if np.isfinite(position).all():
@@ -176,26 +169,28 @@ class IkNode(Node):
         setpoint = self._newest
         if setpoint is None:
             return
-        if self._reference is None and not self._start():
-            if self._told_waiting != setpoint.sequence:
-                self._told_waiting = setpoint.sequence
-                message = "waiting for joint_states to start from"
-                self._publish_verdict(Verdict(setpoint.sequence, setpoint.position, Result.WAITING, message))
-                self.get_logger().info(message, throttle_duration_sec=5.0)
+        if not self._follower.started and not self._start():
+            self._tell_waiting(setpoint)
             return
         self._newest = None
         self._solve(setpoint)
+
+    def _tell_waiting(self, setpoint: _Setpoint) -> None:
+        """Say once that a setpoint waits."""
+        message = "waiting for joint_states to start from"
+        if self._told_waiting == 0:
+            self.get_logger().info(message)
+        if self._told_waiting != setpoint.sequence:
+            self._told_waiting = setpoint.sequence
+            self._publish_verdict(Verdict(setpoint.sequence, setpoint.position, Result.WAITING, message))
 
     def _start(self) -> bool:
         """Begin where the device is; False where that is not known."""
         position = self._measured()
         if position is None:
             return False
-        limit = self.values.per_joint("max_joint_speed", self._names)
         with self._lock:
-            self._angles = position
-            self._reference = JointReference(position, limit)
-            self._published = time.monotonic()
+            self._follower.start(position, time.monotonic())
         return True
 
     def _measured(self) -> Array | None:
@@ -210,16 +205,12 @@ class IkNode(Node):
 
     def _solve(self, setpoint: _Setpoint) -> None:
         began = time.perf_counter()
-        answer = self._ik.solve(setpoint.position, self._angles)
+        answer = self._follower.solve(setpoint.position)
         elapsed = time.perf_counter() - began
-        velocity = self._motion.add(setpoint.position, setpoint.time)
-        moving = answer.result is Result.REACHED and velocity.any()
-        rates = self.chain.inverse_velocity(answer.angles, velocity) if moving else None
         with self._lock:
-            self._angles, self._setpoint = answer.angles, setpoint
-            self._stream_dead = False
-            self._reference.aim(answer.angles, rates)
+            self._follower.accept(setpoint.position, setpoint.time, answer)
             self._publish_reference(time.monotonic())
+        self._setpoint = setpoint
         self._solved += 1
         self._solve_times.add(elapsed)
         superseded, self._superseded = self._superseded, 0
@@ -238,32 +229,18 @@ class IkNode(Node):
     def _tick(self, dt: float) -> None:
         now = time.monotonic()
         with self._lock:
-            if self._reference is None or self._setpoint is None:
-                return
-            self._stop_dead_stream(now)
-            if self._motion.standing(now):
-                self._reference.rest()
-            # A setpoint that was answered just now has published the reference already.
-            if now - self._published > 0.95 / self.loop.rate:
+            was_dead = self._follower.stream_dead
+            if self._follower.due(now):
                 self._publish_reference(now)
-
-    def _stop_dead_stream(self, now: float) -> None:
-        if self.values.setpoint_mode != STREAM or self._stream_dead:
-            return
-        if now - self._setpoint.time > self.values.setpoint_timeout:
-            self._stream_dead = True
-            if not self._reference.arrived:
-                self.get_logger().warning("the stream of setpoints is dead: stopped")
-            self._reference.stop()
+            died = self._follower.stream_dead and not was_dead
+        if died:
+            self.get_logger().warning("the stream of setpoints is dead: the arm stops")
 
     def _publish_reference(self, now: float) -> None:
         """Advance the reference to `now` and publish it; the lock is held."""
-        # After a stall the reference goes on from where it was; it does not make up for the time.
-        elapsed = min(now - self._published, 2.0 / self.loop.rate)
-        self._reference.advance(elapsed)
-        self._published = now
-        fill(self._message, "position", self._reference.position)
-        fill(self._message, "velocity", self._reference.velocity)
+        position, velocity = self._follower.advance(now)
+        fill(self._message, "position", position)
+        fill(self._message, "velocity", velocity)
         stamp_now(self._message.header.stamp, self.get_clock())
         self._publisher.publish(self._message)
 
@@ -287,9 +264,9 @@ class IkNode(Node):
         findings = []
         if solve.p99 > self.values["diagnostics.solve_p99_warn"]:
             findings.append((WARN, f"99th percentile of the solve time is {solve.p99:.4f} s"))
-        if self._newest is not None and self._reference is None:
+        if self._newest is not None and not self._follower.started:
             findings.append((WARN, "a setpoint waits for joint_states"))
-        if self._stream_dead:
+        if self._follower.stream_dead:
             findings.append((WARN, "the stream of setpoints is dead"))
         level, message = worst(findings)
         figures = {
@@ -299,7 +276,7 @@ class IkNode(Node):
             "solve_p99_s": solve.p99,
             "setpoint_age_s": now - self._setpoint.time if self._setpoint else math.nan,
             "state_age_s": now - self._raw_state[1] if self._raw_state else math.nan,
-            "arrived": self._reference is not None and self._reference.arrived,
+            "arrived": self._follower.reference.arrived,
         }
         return Health(level if findings else OK, message, figures)
 

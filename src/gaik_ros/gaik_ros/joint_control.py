@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from gaik_ros.pid import Gains, Pid
 from gaik_ros.reference import JointReference
@@ -89,8 +89,8 @@ class JointControl:
         `state` and `reference` are (joints,) rad or None if never heard, ages s, `dt` s since the last step.
         """
         powerless = self._powerless(state, state_age, reference, reference_age)
-        if powerless is not None:
-            return self._let_go(powerless)
+        if powerless is not None or state is None:
+            return self._let_go(powerless or Mode.WAITING)
         if self.mode in _POWERLESS:
             self._seize(state)
         if reference is None or reference_age > self.settings.reference_timeout:
@@ -124,14 +124,14 @@ class JointControl:
         self._approach.stop()
         self.mode = Mode.HOLDING
 
-    def _hold(self) -> tuple[Array, ArrayLike]:
+    def _hold(self) -> tuple[Array, Array | float]:
         if self.mode is not Mode.HOLDING:
             self._approach.stop()
             self._pid.resume()
             self.mode = Mode.HOLDING
         return self._approach.position, 0.0
 
-    def _follow(self, reference: Array, velocity: Array | float, dt: float) -> tuple[Array, ArrayLike]:
+    def _follow(self, reference: Array, velocity: Array | float, dt: float) -> tuple[Array, Array | float]:
         if self.mode is Mode.FOLLOWING:
             self._approach.position = reference
             return reference, velocity

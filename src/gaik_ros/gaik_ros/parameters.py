@@ -10,6 +10,7 @@ import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from difflib import get_close_matches
+from typing import Any
 
 from rcl_interfaces.msg import ParameterDescriptor, SetParametersResult
 from rclpy.node import Node
@@ -40,7 +41,7 @@ class Parameter:
     upper: float | None = None
     choices: tuple[str, ...] | None = None
     read_only: bool = False
-    check: Callable[[Value], None] | None = None  # raises ValueError with the reason
+    check: Callable[[Any], None] | None = None  # raises ValueError with the reason
     per_joint: bool = False  # a float that may be a list, one value for each joint
 
     @property
@@ -67,11 +68,11 @@ class Parameter:
             return f"at most {self.upper:g}{unit}"
         return ""
 
-    def convert(self, value: object) -> Value:
+    def convert(self, value: Any) -> Value:
         """`value` as this parameter's own type; ParameterError says what it was and what it may be."""
         converted = self._converted(value)
         for number in converted if isinstance(converted, tuple) else (converted,):
-            if _is_number(number):
+            if isinstance(number, int | float) and not isinstance(number, bool):
                 self._check_number(number)
         if self.choices is not None and converted not in self.choices:
             raise self._error(value, f"it may be {self.range_text}")
@@ -82,7 +83,7 @@ class Parameter:
                 raise self._error(value, str(reason)) from reason
         return converted
 
-    def _converted(self, value: object) -> Value:
+    def _converted(self, value: Any) -> Value:
         if isinstance(self.default, bool):
             if isinstance(value, bool):
                 return value
@@ -134,7 +135,7 @@ class Parameter:
         )
 
 
-class ParameterSet(Mapping[str, Value]):
+class ParameterSet(Mapping[str, Any]):
     """The values in force, read as `values.rate` or `values["gains.p"]`.
 
     A change replaces all values at once, so a reader on another thread sees the old set or the new one.
@@ -143,10 +144,10 @@ class ParameterSet(Mapping[str, Value]):
     def __init__(self, values: Mapping[str, Value]) -> None:
         self._values = dict(values)
 
-    def __getitem__(self, name: str) -> Value:
+    def __getitem__(self, name: str) -> Any:
         return self._values[name]
 
-    def __getattr__(self, name: str) -> Value:
+    def __getattr__(self, name: str) -> Any:
         try:
             return self.__dict__["_values"][name]
         except KeyError:
@@ -220,7 +221,7 @@ class ParameterTable:
         node.add_on_set_parameters_callback(on_set)
         return values
 
-    def declare_first(self, node: Node, name: str) -> Value:
+    def declare_first(self, node: Node, name: str) -> Any:
         """Declare one parameter, which the others depend on, before the rest, and give its value."""
         return _declared(node, next(row for row in self.parameters if row.name == name))
 
@@ -255,7 +256,7 @@ def _is_number(value: object) -> bool:
     return isinstance(value, int | float) and not isinstance(value, bool)
 
 
-def _shown(value: object) -> str:
+def _shown(value: Any) -> str:
     if value is None:
         return "not set"
     return repr(list(value)) if _is_sequence(value) else repr(value)

@@ -9,8 +9,8 @@ jumping where the law changes under it: chosen at the change, then decaying.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass, fields
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -23,20 +23,20 @@ LONGEST_STEP = 0.1  # s: after a longer pause the error's difference says nothin
 
 @dataclass(frozen=True, eq=False)
 class Gains:
-    """The settings of a Pid, each (joints,) or one float for all joints.
+    """The settings of a Pid, each (joints,) or one float for all joints; kept as arrays.
 
     Raises ValueError for values that are not finite, negative gains and times, and crossed limits.
     """
 
-    p: ArrayLike = 3.1  # N·m/rad
-    i: ArrayLike = 0.01  # N·m/(rad·s)
-    d: ArrayLike = 0.3  # N·m·s/rad
-    feed_forward: ArrayLike = 0.0  # N·m·s/rad, on the reference's velocity
-    filter_time: ArrayLike = 0.05  # s, time constant of the derivative's low-pass; 0: none
-    output_min: ArrayLike = -1.0  # N·m
-    output_max: ArrayLike = 1.0  # N·m
-    integral_min: ArrayLike = -1.0  # N·m, bounds of the integral's share of the output
-    integral_max: ArrayLike = 1.0  # N·m
+    p: Any = 3.1  # N·m/rad
+    i: Any = 0.01  # N·m/(rad·s)
+    d: Any = 0.3  # N·m·s/rad
+    feed_forward: Any = 0.0  # N·m·s/rad, on the reference's velocity
+    filter_time: Any = 0.05  # s, time constant of the derivative's low-pass; 0: none
+    output_min: Any = -1.0  # N·m
+    output_max: Any = 1.0  # N·m
+    integral_min: Any = -1.0  # N·m, bounds of the integral's share of the output
+    integral_max: Any = 1.0  # N·m
     anti_windup: bool = True  # the integral stands still while it would push further into the limit
 
     def __post_init__(self) -> None:
@@ -111,7 +111,7 @@ class Pid:
         blend, keep = self._decay(dt)
         if self._error is None or dt > LONGEST_STEP:
             self._derivative = np.zeros(self._joints)
-            gained = 0.0
+            gained = np.zeros(self._joints)
         else:
             # Exact for an error that is a straight line between the samples.
             self._derivative = keep * self._derivative + (1.0 - keep) * ((error - self._error) / dt)
@@ -140,13 +140,3 @@ class Pid:
             keep = np.exp(-dt / np.maximum(times, 1e-12))
             self._decays = (dt, blend, keep)
         return self._decays[1], self._decays[2]
-
-
-def per_joint_gains(gains: Sequence[Gains]) -> Gains:
-    """One Gains of arrays from one for each joint."""
-    stacked = {
-        field.name: np.array([getattr(one, field.name) for one in gains])
-        for field in fields(Gains)
-        if field.name != "anti_windup"
-    }
-    return Gains(**stacked, anti_windup=all(one.anti_windup for one in gains))

@@ -18,7 +18,7 @@ from gaik_ros.conversions import JointMessageError, fill, joint_state, joint_val
 from gaik_ros.deadline_loop import DeadlineLoop
 from gaik_ros.health import ERROR, LOOP_PARAMETERS, OK, WARN, Health, HealthReporter
 from gaik_ros.joint_control import ON_REFERENCE_TIMEOUT, ControlSettings, JointControl, Mode
-from gaik_ros.parameters import Parameter, ParameterSet, ParameterTable, Value
+from gaik_ros.parameters import Parameter, ParameterSet, ParameterTable
 from gaik_ros.pid import Gains
 from gaik_ros.run import run
 from gaik_ros.watch import Watch
@@ -26,7 +26,7 @@ from gaik_ros.watch import Watch
 Array = NDArray[np.float64]
 
 
-def _unique(names: Value) -> None:
+def _unique(names: Any) -> None:
     if len(set(names)) != len(names) or not all(names):
         raise ValueError("every joint needs a name of its own")
 
@@ -124,9 +124,9 @@ def settings_of(values: ParameterSet) -> ControlSettings:
 
 
 class _Heard:
-    """The newest values of a topic and when they were received; replaced whole, so that any thread may read."""
+    """The newest values of a topic, None before the first, and when they came; replaced whole, for any thread."""
 
-    def __init__(self, position: Array, velocity: Array | float = 0.0) -> None:
+    def __init__(self, position: Array | None, velocity: Array | float = 0.0) -> None:
         self.position = position
         self.velocity = velocity
         self.time = time.monotonic()
@@ -138,16 +138,14 @@ class PidController(Node):
     def __init__(self, **node_kwargs: Any) -> None:
         super().__init__(TABLE.node, **node_kwargs)
         self._lock = threading.Lock()  # the loop's thread steps what services and parameters change
-        self._control: JointControl | None = None
         names = TABLE.declare_first(self, "dof_names")
         self.values = TABLE.for_joints(names).declare(self, self._configure)
         self._names: list[str] = list(names)
         self._control = JointControl(
             len(names), gains_of(self.values, names), settings_of(self.values), self.values.bumpless_time
         )
-        self._state: _Heard | None = None
+        self._state = self._reference = _Heard(None)
         self._state_stamp = (0, 0)
-        self._reference: _Heard | None = None
         self._mode = Mode.WAITING
         self._connect()
         self.loop = DeadlineLoop(self.values.rate, self._tick)
@@ -197,11 +195,11 @@ class PidController(Node):
         with self._lock:
             effort = self._control.step(
                 dt,
-                state and state.position,
-                now - state.time if state else 0.0,
-                reference and reference.position,
-                reference.velocity if reference else 0.0,
-                now - reference.time if reference else 0.0,
+                state.position,
+                now - state.time,
+                reference.position,
+                reference.velocity,
+                now - reference.time,
             )
         fill(self._command, "effort", effort)
         stamp_now(self._command.header.stamp, self.get_clock())
@@ -216,7 +214,7 @@ class PidController(Node):
             self.get_logger().error(
                 f"no joint_states for {self._control.settings.state_timeout:g} s: zero effort"
             )
-        elif mode is Mode.RELEASED or (mode is Mode.HOLDING and self._reference is not None):
+        elif mode is Mode.RELEASED or (mode is Mode.HOLDING and self._reference.position is not None):
             action = "holding position" if mode is Mode.HOLDING else "zero effort"
             self.get_logger().warning(f"no fresh joint_reference: {action}")
 
@@ -235,7 +233,7 @@ class PidController(Node):
 
     def _control_health(self) -> Health:
         mode, state, reference, now = self._control.mode, self._state, self._reference, time.monotonic()
-        age = now - reference.time if reference else float("nan")
+        age = now - reference.time if reference.position is not None else float("nan")
         level = OK
         if mode is Mode.STATE_LOST:
             level = ERROR
@@ -243,7 +241,7 @@ class PidController(Node):
             level = WARN
         figures = {
             "mode": mode,
-            "state_age_s": now - state.time if state else float("nan"),
+            "state_age_s": now - state.time if state.position is not None else float("nan"),
             "reference_age_s": age,
         }
         return Health(level, str(mode), figures)

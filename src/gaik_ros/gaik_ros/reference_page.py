@@ -13,8 +13,10 @@ import importlib
 import sys
 from collections.abc import Sequence
 
+from rclpy.qos import QoSProfile
+
 from gaik_ros.parameters import JOINT, Parameter, ParameterTable, Value
-from gaik_ros.qos import TOPICS, QoSProfile, Topic
+from gaik_ros.qos import TOPICS, Topic
 
 OWN = ("gaik_ros.trajectory_publisher", "gaik_ros.ik_node", "gaik_ros.pid_controller")
 

@@ -11,12 +11,12 @@ from geometry_msgs.msg import Point
 from rclpy.node import Node
 from std_srvs.srv import Trigger
 
-from gaik_core.paths import Circle, Lemniscate
+from gaik_core.paths import Circle, Lemniscate, Path
 from gaik_ros import qos
 from gaik_ros.conversions import array_to_point
 from gaik_ros.deadline_loop import DeadlineLoop
 from gaik_ros.health import LOOP_PARAMETERS, OK, Health, HealthReporter
-from gaik_ros.parameters import Parameter, ParameterSet, ParameterTable, Value
+from gaik_ros.parameters import Parameter, ParameterSet, ParameterTable
 from gaik_ros.point_file import read_points
 from gaik_ros.run import run
 from gaik_ros.trajectory import Trajectory, along_path, through_points
@@ -25,7 +25,7 @@ from gaik_ros.watch import Watch
 CIRCLE, LEMNISCATE, POINTS = "circle", "lemniscate", "points"
 
 
-def _three(value: Value) -> None:
+def _three(value: Any) -> None:
     if len(value) != 3:
         raise ValueError("it must have three coordinates")
 
@@ -59,6 +59,7 @@ def trajectory_of(values: ParameterSet) -> Trajectory:
     """The trajectory that the parameters describe. PointFileError: the file is no list of points."""
     if values.path == POINTS:
         return through_points(read_points(values.file), values.rate)
+    path: Path
     if values.path == CIRCLE:
         path = Circle(radius=values.radius, tilt=values.circle_tilt, centre=values.centre)
     else:
