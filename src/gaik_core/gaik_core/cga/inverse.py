@@ -10,7 +10,9 @@ from gaik_core.cga.products import GEOMETRIC, product
 from gaik_core.errors import GaikError
 
 _EPSILON = float(np.finfo(float).eps)
-_TRANSPOSED = SIGNS[BITS[:, None] ^ BITS, BITS]
+_XOR = BITS[:, None] ^ BITS
+_LEFT_SIGNS = SIGNS[_XOR, BITS]
+"""Y ↦ X Y has the matrix x[k xor j] SIGNS[k xor j, j]."""
 
 
 class NotInvertibleError(GaikError):
@@ -53,13 +55,17 @@ def inverse(x: Array) -> Array:
 
 def _inverse_by_linear_algebra(x: Array) -> Array:
     """The solution Y of X Y = 1, where Y ↦ X Y is a matrix 32 by 32."""
-    matrix = x[..., BITS[:, None] ^ BITS] * _TRANSPOSED
+    matrix = x[..., _XOR] * _LEFT_SIGNS
     one = np.zeros((BLADES, 1))
     one[0] = 1.0
-    singular_values = np.linalg.svd(matrix, compute_uv=False)
-    if not np.all(singular_values[..., -1] > BLADES * _EPSILON * singular_values[..., 0]):
+    try:
+        solution: Array = np.linalg.solve(matrix, np.broadcast_to(one, (*matrix.shape[:-1], 1)))[..., 0]
+    except np.linalg.LinAlgError:
+        raise NotInvertibleError(_message("X Y = 1 has no solution")) from None
+    # the Frobenius norm of such a matrix is √32 times the norm of its multivector, so this is the condition number
+    condition = BLADES * np.sqrt(np.sum(x * x, axis=-1) * np.sum(solution * solution, axis=-1))
+    if not np.all(condition < 1.0 / (BLADES * _EPSILON)):
         raise NotInvertibleError(_message("X Y = 1 has no solution"))
-    solution: Array = np.linalg.solve(matrix, np.broadcast_to(one, (*matrix.shape[:-1], 1)))[..., 0]
     return solution
 
 

@@ -231,7 +231,7 @@ class Multivector:
 
     def grade(self, *grades: int) -> Multivector:
         """⟨A⟩_r, the part of one grade, or of several."""
-        return wrap(self._components * np.isin(GRADES, grades))
+        return wrap(np.where(np.isin(GRADES, grades), self._components, 0.0))
 
     def even(self) -> Multivector:
         """The part of grades 0, 2 and 4."""
