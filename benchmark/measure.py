@@ -66,6 +66,10 @@ def measure(
             runs.append(_prepare(kind, problem, budget))
         except NotSolvableError as reason:
             refused[kind.name] = str(reason)
+        except Exception as error:
+            if kind.package == "gaik_core":
+                raise
+            refused[kind.name] = f"failed with {error!r}"
     seconds = interleave([run.timed for run in runs], rounds, problem.key)
     results = [run.result(times / run.count) for run, times in zip(runs, seconds, strict=True)]
     return sorted(results, key=lambda result: result.median), refused

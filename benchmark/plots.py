@@ -39,7 +39,7 @@ def _bars(axis: Axes, task: Task) -> None:
     labels = []
     for value, r in zip(values, task.results, strict=True):
         label = f"{value:,.0f}".replace(",", " ") if value >= 100 else f"{value:.3g}"
-        labels.append(label if r.solved > 0.9985 else f"{label}  ({100 * r.solved:.0f} % solved)")
+        labels.append(label if r.solved >= 0.9995 else f"{label}  ({100 * r.solved:.1f} % solved)")
     axis.bar_label(bars, labels, padding=4, fontsize=9)
     axis.set_xscale("log")
     axis.set_xlim(values.min() / 2, values.max() * 20)
@@ -50,22 +50,15 @@ def _bars(axis: Axes, task: Task) -> None:
 
 
 def plot_scaling(scaling: Scaling, path: Path) -> None:
-    """Time per iteration over joints, with the straight line through the ends."""
+    """Time per iteration over joints, with the straight line nearest to it."""
     figure = Figure(figsize=(7, 4.2), layout="constrained")
     axis = figure.subplots()
     joints = np.array(scaling.joints)
     for name, times, marker in zip(scaling.names, 1e6 * scaling.seconds.T, "osd^", strict=False):
-        (line,) = axis.plot(joints, times, marker, label=name)
         slope, base = np.polyfit(joints, times, 1)
-        axis.plot(joints, base + slope * joints, "-", color=line.get_color(), linewidth=1)
-        axis.annotate(
-            f"{1e3 * slope:.0f} ns per joint",
-            (joints[-1], times[-1]),
-            (-6, -14),
-            textcoords="offset points",
-            ha="right",
-            fontsize=9,
-        )
+        (line,) = axis.plot(joints, base + slope * joints, "-", linewidth=1)
+        label = f"{name}: {1e3 * slope:.0f} ns per joint"
+        axis.plot(joints, times, marker, color=line.get_color(), label=label)
     axis.set_xlabel("joints")
     axis.set_ylabel("µs per iteration")
     axis.set_xlim(0, None)

@@ -50,6 +50,15 @@ class Problem:
     warm: bool = False
     restarts: int = 0
 
+    def __post_init__(self) -> None:
+        """Refuse a URDF that is another arm than the chain."""
+        peers = KinematicChain.from_urdf(self.urdf, self.base, self.tip)
+        angles = np.linspace(-1.0, 1.0, 3 * self.chain.dof).reshape(3, -1)
+        if not np.allclose(
+            peers.forward(self.chain.axis_angles(angles)), self.chain.forward(angles), atol=1e-9
+        ):
+            raise ValueError(f"{self.urdf} is not the arm {self.chain.name!r}")
+
     @property
     def axis_start(self) -> Array:
         """(axes,) the start as the peers' joints have it."""

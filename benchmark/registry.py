@@ -49,8 +49,8 @@ def load(entries: tuple[tuple[str, str], ...], only: list[str] | None = None) ->
             continue
         try:
             result.classes.append(getattr(importlib.import_module(module), name))
-        except ImportError as error:
-            result.missing[name] = str(error)
+        except Exception as error:  # a broken peer is a missing one
+            result.missing[name] = str(error) or type(error).__name__
     return result
 
 

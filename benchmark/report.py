@@ -112,7 +112,7 @@ def _speed(key: str, result: Result) -> str:
 def _scaling(scaling: Scaling) -> str:
     lines = [
         "## Time per iteration over the number of joints\n",
-        "Serial arms of revolute joints with axes across each other, in turn; µs per iteration.\n",
+        "Serial arms of revolute joints with axes across each other; µs per iteration, the fastest of the rounds.\n",
         "| joints | " + " | ".join(scaling.names) + " |",
         "| ---: |" + " ---: |" * len(scaling.names),
     ]
