@@ -2,7 +2,8 @@
 
     python -m touch_sim.demo        ros2 run touch_sim demo        make demo
 
-Only this file's own reading of options needs nothing but Python, so that a missing module is said in one line.
+Options are read with nothing but Python, and the rest is imported after that, so that a missing module can be
+said in one line.
 """
 
 from __future__ import annotations
@@ -62,32 +63,30 @@ def main(args: Sequence[str] | None = None) -> int:
 def _demonstrate(options: argparse.Namespace, ros_arguments: list[str]) -> int:
     """Run the demo and write what it gave; returns the exit code."""
     import rclpy
+    from rclpy.exceptions import NameValidationException
+    from rclpy.impl.implementation_singleton import rclpy_implementation
     from rclpy.signals import SignalHandlerOptions
+    from rclpy.validate_namespace import validate_namespace
 
-    from touch_sim import demo_figures, demo_report
+    from touch_sim.demo_output import write
     from touch_sim.demo_progress import progress_for
     from touch_sim.demo_run import DemoError, run_demo
     from touch_sim.suite import SuiteOptions
 
+    suite = SuiteOptions(**{name: getattr(options, name) for name in SuiteOptions.__dataclass_fields__})
     paths = ("circle", "lemniscate") if options.path == "both" else (options.path,)
     try:
-        rclpy.init(args=["demo", *ros_arguments], signal_handler_options=SignalHandlerOptions.NO)
-        names = SuiteOptions.__dataclass_fields__
-        suite = SuiteOptions(**{name: getattr(options, name) for name in names})
+        validate_namespace("/" + suite.namespace.strip("/"))
         options.out.mkdir(parents=True, exist_ok=True)
+        rclpy.init(args=["demo", *ros_arguments], signal_handler_options=SignalHandlerOptions.NO)
         results = run_demo(suite, paths, options.laps, progress_for(sys.stderr))
     except DemoError as reason:
         return _complain(str(reason), FAILED)
-    except (ValueError, OSError) as reason:
+    except (ValueError, OSError, NameValidationException, rclpy_implementation.RCLError) as reason:
         return _complain(str(reason), BAD_OPTION)
     finally:
         rclpy.try_shutdown()
-    files = [options.out / name for name in ("fig21_path.png", "fig22_joints.png", "demo.json")]
-    demo_figures.draw_paths(results.runs, files[0])
-    demo_figures.draw_joints(results.runs, files[1])
-    demo_report.write_json(results, files[2])
-    print(demo_report.table(results))
-    print(f"\nwritten: {', '.join(map(str, files))}")
+    print(write(results, options.out))
     return 0
 
 
@@ -158,7 +157,7 @@ def _interrupt(number: int, frame: object) -> None:
 
 
 def _complain(message: str, code: int) -> int:
-    print(f"demo: {message}", file=sys.stderr)
+    print(f"demo: {' '.join(message.split())}", file=sys.stderr)
     return code
 
 

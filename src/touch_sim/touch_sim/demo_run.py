@@ -17,6 +17,7 @@ from rclpy.node import Node
 from rclpy.parameter import Parameter
 from std_srvs.srv import Trigger
 
+from gaik_core import KinematicChain, LevenbergMarquardt, solve_path
 from gaik_core.paths import path_by_name
 from gaik_ros.run import running
 from touch_sim.loop_meter import LoopMeter, LoopRate
@@ -62,6 +63,7 @@ def run_demo(
     options: SuiteOptions, paths: Sequence[str], laps: int, progress: Progress, context: Context | None = None
 ) -> Results:
     """Follow each of `paths` for `laps` laps. Raises ValueError for a bad option, DemoError where a run fails."""
+    _check_reach(options.robot, paths)
     suite = Suite(options, context)
     demo = Node("demo", context=context, namespace=options.namespace)
     conductor = Conductor(suite, demo, progress)
@@ -69,6 +71,17 @@ def run_demo(
         conductor.wait_for_suite()
         recordings = [conductor.follow(name, laps) for name in paths]
     return conductor.results(paths, laps, recordings)
+
+
+def _check_reach(robot: str, paths: Sequence[str]) -> None:
+    """Raise ValueError where a robot does not reach a path everywhere."""
+    chain = KinematicChain.load(robot)
+    for name in paths:
+        points = path_by_name(name).points()
+        reached = solve_path(chain, points, rule=LevenbergMarquardt(), tolerance=1e-5).converged
+        if not reached.all():
+            where = np.round(points[~reached][0], 4).tolist()
+            raise ValueError(f"robot {robot} does not reach the {name} everywhere: not at {where} m")
 
 
 class Conductor:
