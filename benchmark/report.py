@@ -32,7 +32,7 @@ To run it again, with every peer:
     make bench
 
 PyKDL is not on PyPI; on Debian and Ubuntu it is `apt install python3-pykdl`, built for numpy before 2, and is found
-from a virtual environment of the system's version of Python. For its sake the run above was made after
+from a virtual environment of the system's version of Python. A run that has it was made after
 `pip install numpy==1.26.4`: pip then warns that two packages ask for numpy 2, but all peers run.
 """
 
