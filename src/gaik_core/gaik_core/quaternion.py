@@ -194,13 +194,11 @@ def _sinc(x: Array) -> Array:
 class Quaternion:
     """One quaternion, or an array of them: frozen, `components (…, 4)`, w first.
 
-    | operator | method |
-    | --- | --- |
-    | `p * q` | `p.multiply(q)`, Hamilton's product; a number or an array `(…)` scales |
-    | `~q` | `q.conjugate()` |
-    | `p / q` | `p.multiply(q.inverse())` |
-    | `p + q`, `p - q`, `-q`, `p == q` | by components; a number is its real part |
-    | `q ** t` | `exp(t log q)` |
+    p * q    multiply    Hamilton's product; a number or an array `(…)` scales
+    ~q       conjugate
+    p / q                p times the inverse of q
+    q ** t               exp(t log q)
+    p + q, p - q, -q, p == q   by components; a number counts as its real part
     """
 
     __slots__ = ("_components",)

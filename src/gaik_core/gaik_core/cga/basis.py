@@ -6,6 +6,8 @@ The product of two blades is again a blade, up to its sign: e_A e_B = SIGNS[A, B
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
 
 from gaik_core.arrays import Array
@@ -44,6 +46,13 @@ SIGNS: Array = np.array([[_sign(a, b) for b in range(BLADES)] for a in range(BLA
 REVERSE: Array = (-1.0) ** (GRADES * (GRADES - 1) // 2)
 INVOLUTION: Array = (-1.0) ** GRADES
 CONJUGATE: Array = REVERSE * INVOLUTION
+
+
+@cache
+def grade_mask(grades: tuple[int, ...]) -> np.ndarray:
+    """Which components have one of these grades, shape `(32,)`."""
+    mask: np.ndarray = np.isin(GRADES, grades)
+    return mask
 
 
 def blade_index_and_sign(name: str) -> tuple[int, float]:

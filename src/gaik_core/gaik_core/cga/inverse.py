@@ -25,7 +25,7 @@ def norm_squared(x: Array) -> Array:
     x4² - x5² is taken as a product: in a motor far from the origin both are large and equal, and their squares would
     swamp the rest.
     """
-    euclidean, on_e4, on_e5, on_e45 = np.moveaxis(x.reshape(*x.shape[:-1], 4, 8), -2, 0)
+    euclidean, on_e4, on_e5, on_e45 = x[..., :8], x[..., 8:16], x[..., 16:24], x[..., 24:]
     total: Array = np.sum(euclidean**2 - on_e45**2 + (on_e4 - on_e5) * (on_e4 + on_e5), axis=-1)
     return total
 

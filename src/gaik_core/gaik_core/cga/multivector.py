@@ -11,7 +11,7 @@ from gaik_core import arrays
 from gaik_core.arrays import Array
 from gaik_core.cga import exponential, printing, products
 from gaik_core.cga import inverse as inverses
-from gaik_core.cga.basis import BLADES, CONJUGATE, GRADES, INVOLUTION, REVERSE, blade_index_and_sign
+from gaik_core.cga.basis import BLADES, CONJUGATE, INVOLUTION, REVERSE, blade_index_and_sign, grade_mask
 from gaik_core.cga.products import GEOMETRIC, INNER, OUTER, product
 
 
@@ -23,17 +23,15 @@ class Multivector:
     prints e4 - e5). Arrays of multivectors broadcast as numpy arrays of shape `.shape` do. A number, or an array of
     numbers `(…)`, counts as scalar wherever a multivector may stand.
 
-    | operator | method | |
-    | --- | --- | --- |
-    | `a * b` | `geometric` | geometric (Clifford) product |
-    | `a ^ b` | `outer` | outer product (wedge) |
-    | `a | b` | `inner` | Hestenes' inner product (dot): grade |r - s|, zero where either side is a scalar |
-    | `~a` | `reverse` | |
-    | `a / b` | | a times the inverse of b |
-    | `a ** n` | | geometric power, n an integer of either sign |
-    | `a == b` | | equal in every component; shape `(…)`. `isclose` forgives rounding |
+        a * b    geometric   the geometric (Clifford) product
+        a ^ b    outer       the outer product (wedge)
+        a | b    inner       Hestenes' inner product (dot): grade |r - s|, zero where either side is a scalar
+        ~a       reverse
+        a / b                a times the inverse of b
+        a ** n               geometric power, n an integer of either sign
+        a == b               equal in every component, shape `(…)`; `isclose` forgives rounding
 
-    The rest have names only.
+    All other products and functions have names only.
     """
 
     __slots__ = ("_components",)
@@ -231,7 +229,7 @@ class Multivector:
 
     def grade(self, *grades: int) -> Multivector:
         """⟨A⟩_r, the part of one grade, or of several."""
-        return wrap(np.where(np.isin(GRADES, grades), self._components, 0.0))
+        return wrap(np.where(grade_mask(grades), self._components, 0.0))
 
     def even(self) -> Multivector:
         """The part of grades 0, 2 and 4."""

@@ -92,9 +92,10 @@ def log_versor(signs: Array, r: Array, out: Array) -> int:
 
 @compiled
 def log_coefficients(w: float, t: float, square: float) -> tuple[float, float, bool]:
-    """m and d for w = ⟨R⟩₀, t = ⟨R⟩₄² and square = ⟨⟨R⟩₂²⟩₀, and whether they exist: half sum and difference quotient of k.
+    """m and d, half the sum and the difference quotient of k at w ± √t, and whether they exist: not for R = -1.
 
-    With a = sinh² √λ₁ and b = sinh² √λ₂: a b = t, a + b = square - 2t, and w = c₁c₂. R = -1 has no logarithm.
+    For w = ⟨R⟩₀ = c₁c₂, t = ⟨R⟩₄² and square = ⟨⟨R⟩₂²⟩₀. With a = sinh² √λ₁ and b = sinh² √λ₂, a b = t and
+    a + b = square - 2t.
     """
     if abs(1.0 - w) + math.sqrt(abs(t)) < 0.2:
         mean, difference = series(K_SERIES, 0.5 * (1.0 - w), -0.5, t)
