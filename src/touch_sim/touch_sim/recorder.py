@@ -78,7 +78,7 @@ class Recording:
 
     def setpoints(self) -> Series:
         """Return the setpoints (n, 3) m at the times of their receipt: they have no stamp."""
-        points = [point_to_array(point) for point in self._messages("setpoint")]
+        points = [point_to_array(point) for point in self.messages("setpoint")]
         times = [1e-9 * nanoseconds for nanoseconds, _ in self._raw["setpoint"]]
         return Series(np.array(times), np.array(points).reshape(-1, 3))
 
@@ -92,13 +92,14 @@ class Recording:
 
     def verdicts(self) -> list[dict[str, str]]:
         """Return the IK node's verdicts, each as its keys and values."""
-        messages = self._messages("ik_node/status")
+        messages = self.messages("ik_node/status")
         return [{pair.key: pair.value for pair in message.values} for message in messages]
 
     def _stamped(self, topic: str, values: Callable[[Any], Array], width: int) -> Series:
-        messages = self._messages(topic)
+        messages = self.messages(topic)
         times = [m.header.stamp.sec + 1e-9 * m.header.stamp.nanosec for m in messages]
         return Series(np.array(times), np.array([values(m) for m in messages]).reshape(-1, width))
 
-    def _messages(self, topic: str) -> list[Any]:
+    def messages(self, topic: str) -> list[Any]:
+        """Return all messages of a topic."""
         return [deserialize_message(raw, TOPICS[topic]) for _, raw in self._raw[topic]]

@@ -68,15 +68,20 @@ class TrackingError:
     samples: int
 
 
-def tracking_error(run: Run) -> TrackingError:
-    """Return the error of the tip over the laps; what was before and after them does not count.
+def tip_distances(run: Run) -> Array:
+    """Return the distance (n,) m of each tip measured during the laps; those before and after do not count.
 
-    Raises ValueError where no tip was measured during the laps.
+    Raises ValueError where there is none.
     """
     tip = run.tip.between(run.lap.start, run.lap.end)
     if not tip.time.size:
         raise ValueError(f"no tip was measured while the {run.name} was followed")
-    distance = np.linalg.norm(tip.values - run.lap.desired(tip.time), axis=1)
+    return np.asarray(np.linalg.norm(tip.values - run.lap.desired(tip.time), axis=1))
+
+
+def tracking_error(run: Run) -> TrackingError:
+    """Return the error of the tip over the laps. Raises ValueError where none was measured."""
+    distance = tip_distances(run)
     return TrackingError(float(np.sqrt((distance**2).mean())), float(distance.max()), int(distance.size))
 
 
