@@ -32,8 +32,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except BrokenPipeError:  # the reader has seen enough, as `head` does
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 0
-    except (GaikError, OSError) as error:
+    except GaikError as error:
         complain(f"gaik: {error}")
+        return 2
+    except OSError as error:
+        complain(f"gaik: {error.filename or 'input or output'}: {error.strerror or error}")
         return 2
 
 
@@ -80,11 +83,21 @@ def unavailable(point: EntryPoint, reason: str) -> Command:
     return Command(f"(not available: {reason})", (), configure, run)
 
 
+class Formatter(RawDescriptionHelpFormatter):
+    """Help with room for the longest option beside its text."""
+
+    def __init__(self, prog: str) -> None:
+        super().__init__(prog, max_help_position=30)
+        self._action_max_length = (
+            16  # argparse forgets that subcommands are indented, and would break the longest
+        )
+
+
 class Parser(ArgumentParser):
     """A parser whose errors are one line, and that takes -1e-3 for a number."""
 
     def __init__(self, **options: Any) -> None:
-        super().__init__(formatter_class=RawDescriptionHelpFormatter, **options)
+        super().__init__(formatter_class=Formatter, **options)
         # Before Python 3.14 argparse takes -0.001 for a number and -1e-3 for an option.
         self._negative_number_matcher = re.compile(r"^-(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?$|^-(inf|nan)$")
 

@@ -30,9 +30,10 @@ def configure(parser: ArgumentParser) -> None:
         "robot", help="a robot's name (see gaik robots) or the path of a robot file"
     )
     robot.completer = lambda **_: KinematicChain.names()
-    parser.add_argument(
-        "target", nargs=3, type=float, metavar=("X", "Y", "Z"), help="where the tip should be (m)"
-    )
+    for axis in "xyz":
+        parser.add_argument(
+            axis, type=float, metavar=axis.upper(), help=f"where the tip should be, along {axis} (m)"
+        )
     _add_target(parser)
     start = parser.add_mutually_exclusive_group()
     start.add_argument(
@@ -69,7 +70,11 @@ def _add_target(parser: ArgumentParser) -> None:
 def _add_method(parser: ArgumentParser) -> None:
     parser.add_argument("--algebra", default="quaternion", choices=ALGEBRAS, help="default: %(default)s")
     parser.add_argument(
-        "--rule", default="levenberg_marquardt", choices=RULES, help="update rule (default: %(default)s)"
+        "--rule",
+        default="levenberg_marquardt",
+        choices=RULES,
+        metavar="RULE",
+        help=f"update rule: {', '.join(RULES)} (default: %(default)s)",
     )
     parser.add_argument(
         "--learning-rate", type=_learning_rate, metavar="RATE", help="of the rule, where it has one"
@@ -114,13 +119,18 @@ def run(arguments: Namespace) -> int:
     return 0 if solution.converged else 1
 
 
+def position(arguments: Namespace) -> list[float]:
+    """Where the tip should be (m)."""
+    return [arguments.x, arguments.y, arguments.z]
+
+
 def target(arguments: Namespace) -> Target:
     """What is asked for: a position, with a direction or an orientation."""
     if arguments.direction is not None:
-        return Pointing(arguments.target, arguments.direction, arguments.tool_axis)
+        return Pointing(position(arguments), arguments.direction, arguments.tool_axis)
     if arguments.orientation is not None:
-        return Pose(arguments.target, arguments.orientation)
-    return np.array(arguments.target)
+        return Pose(position(arguments), arguments.orientation)
+    return position(arguments)
 
 
 def start(arguments: Namespace) -> list[float] | None:
@@ -142,7 +152,7 @@ def as_data(chain: KinematicChain, arguments: Namespace, solution: Solution) -> 
     """The solution as plain data."""
     return {
         "robot": chain.name,
-        "target_m": arguments.target,
+        "target_m": position(arguments),
         "algebra": arguments.algebra,
         "rule": arguments.rule,
         "status": str(solution.status),
@@ -161,7 +171,7 @@ def as_data(chain: KinematicChain, arguments: Namespace, solution: Solution) -> 
 def print_solution(chain: KinematicChain, arguments: Namespace, solution: Solution) -> None:
     """The solution for people."""
     status = coloured(str(solution.status).replace("_", " "), GREEN if solution.converged else RED)
-    where = ", ".join(f"{value:g}" for value in arguments.target)
+    where = ", ".join(f"{value:g}" for value in position(arguments))
     left = f"{solution.error:.2g} m"
     if arguments.direction is not None or arguments.orientation is not None:
         left += f" and {solution.orientation_error:.2g} rad"

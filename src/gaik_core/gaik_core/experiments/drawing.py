@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from io import BytesIO
 from pathlib import Path
 from typing import Any, Literal
 
@@ -49,10 +50,11 @@ def new_figure(width: float, height: float) -> Figure:
 
 def save(draw: Callable[[], Figure], file: Path, dpi: int = 150) -> None:
     """Draw in the common style and write a PNG."""
+    picture = BytesIO()  # so that an interrupted run leaves no half of a file
     with mpl.rc_context(STYLE):
-        figure = draw()
-        file.parent.mkdir(parents=True, exist_ok=True)
-        figure.savefig(file, dpi=dpi, format="png")
+        draw().savefig(picture, dpi=dpi, format="png")
+    file.parent.mkdir(parents=True, exist_ok=True)
+    file.write_bytes(picture.getvalue())
 
 
 def joint_label(joint: int) -> str:

@@ -103,7 +103,7 @@ def run(title: str, path: Path) -> Findings:
             Comparison("points reached", "", POINTS, q["reached"], c["reached"], 0),
             Comparison("updates over all points", "", None, q["updates"], c["updates"], 0),
             Comparison("updates to the first point, from home", "", None, q["first"], c["first"], 0),
-            Comparison("largest distance left", "m", None, q["error"], c["error"], 4),
+            Comparison("largest distance left", "m", None, q["error"], c["error"], 5),
             Comparison("updates over all points, to 1 mm", "", None, q["fine_updates"], c["fine_updates"], 0),
             Comparison("largest distance left, to 1 mm", "m", None, q["fine_error"], c["fine_error"], 6),
         ],

@@ -66,7 +66,7 @@ def find_minima() -> tuple[list[Both], Array]:
     """Descend from a grid of starts over both angles; the solves, and their ends (k, 2) in [-π, π), each once."""
     grid = -np.pi + 2.0 * np.pi * (np.arange(STARTS_PER_ANGLE) + 0.5) / STARTS_PER_ANGLE
     solves = [
-        solve_both(ARM, TARGET, (first, second), GradientDescent(PRINTED_RATE), tolerance=1e-7)
+        solve_both(ARM, TARGET, (first, second), GradientDescent(PRINTED_RATE), tolerance=1e-9)
         for first in grid
         for second in grid
     ]

@@ -66,7 +66,7 @@ def errata(results: Iterable[Result]) -> str:
     equations = [erratum for erratum in found if erratum.where.startswith("eq")]
     others = [erratum for erratum in found if not erratum.where.startswith("eq")]
     rows = [_erratum(erratum) for erratum in [*equations, *others]]
-    return "## Errata\n\n" + table(["where", "printed", "what holds", "measured here"], rows)
+    return "## All errata\n\n" + table(["where", "printed", "what holds", "measured here"], rows)
 
 
 def _erratum(erratum: Erratum) -> list[str]:

@@ -39,29 +39,20 @@ def descend(start: Array, target: Array) -> Both:
     return solve_both(ARM, target, start, RULE, max_iterations=UPDATES)
 
 
-def run(draws: str) -> Findings:
+def run_fig18() -> Findings:
     """The corrected start and target, the printed ones beside them."""
     corrected, printed = descend(START, TARGET), descend(PRINTED_START, PRINTED_TARGET)
     near = solve_both(ARM, TARGET, START, RULE, NEAR)
     end = solve_both(ARM, TARGET, START, RULE, 1e-10)
     origin = solve_both(ARM, PRINTED_TARGET, START, RULE, 1e-10)
+    as_printed = "joints after 30 updates, printed start and target"
     return Findings(
         comparisons=[
             compare("joints after 30 updates", "deg", PRINTED_ANGLES, corrected, degrees, 2),
             compare("joints at the end", "deg", PRINTED_ANGLES, end, degrees, 2),
-            _position("position of the corrected start", PRINTED_POSITION, START),
-            _position("position of the printed start", PRINTED_POSITION, PRINTED_START),
-            _position("position of the printed solution", PRINTED_TARGET, np.radians(PRINTED_ANGLES)),
             compare("error after 30 updates", "m", None, corrected, error, 6),
             compare("updates to 0.1 mm", "", None, near, updates, 0),
-            compare(
-                "joints after 30 updates, printed start and target",
-                "deg",
-                PRINTED_ANGLES,
-                printed,
-                degrees,
-                2,
-            ),
+            compare(as_printed, "deg", PRINTED_ANGLES, printed, degrees, 2),
         ],
         iterates={
             "corrected": end.iterates,
@@ -69,8 +60,22 @@ def run(draws: str) -> Findings:
             "printed": printed.iterates,
             "to the origin": origin.iterates,
         },
-        draw=partial({"updates": draw_updates, "space": draw_space}[draws], corrected, printed),
-        errata=[_start(), _target(end, origin)] if draws == "updates" else [],
+        draw=partial(draw_updates, corrected, printed),
+        errata=[_start(), _target(end, origin)],
+    )
+
+
+def run_fig19() -> Findings:
+    """The same descents in space."""
+    corrected, printed = descend(START, TARGET), descend(PRINTED_START, PRINTED_TARGET)
+    return Findings(
+        comparisons=[
+            _position("position of the corrected start", PRINTED_POSITION, START),
+            _position("position of the printed start", PRINTED_POSITION, PRINTED_START),
+            _position("position of the printed solution", PRINTED_TARGET, np.radians(PRINTED_ANGLES)),
+        ],
+        iterates={"corrected": corrected.iterates, "printed": printed.iterates},
+        draw=partial(draw_space, corrected, printed),
     )
 
 
@@ -209,7 +214,7 @@ FIG18 = Experiment(
     ABOUT
     + "Above, joints and error; below, the same from the printed start to the printed target. Dotted: the printed "
     "solution.",
-    partial(run, "updates"),
+    run_fig18,
 )
 FIG19 = Experiment(
     "fig19",
@@ -218,5 +223,5 @@ FIG19 = Experiment(
     ABOUT
     + "A: the falling gradient over the three joints. B: where one update moves the tip, over poses of the arm. "
     "C: the tip's path and the links; dotted, the tip's path from the printed start to the printed target.",
-    partial(run, "space"),
+    run_fig19,
 )

@@ -238,7 +238,7 @@ def _claim(nearest: dict[int, Nearest]) -> Erratum:
     return Erratum(
         where="3.3, 3.4, abstract",
         printed="descent finds the solution closest to the initial configuration",
-        holds="often the closest of separate solutions, seldom the closest of a redundant arm's; never by design",
+        holds="the one whose basin the start lies in: usually, not always, the closest",
         measured="; ".join(parts),
         confirmed=all(0.0 < found.share < 1.0 for found in nearest.values()),
     )
