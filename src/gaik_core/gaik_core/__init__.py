@@ -12,7 +12,8 @@ from gaik_core.chain import ALGEBRAS, KinematicChain
 from gaik_core.errors import GaikError
 from gaik_core.joint import Joint
 from gaik_core.quaternion import Quaternion
-from gaik_core.solver import Solution, Solutions, Status, Trace, solve, solve_batch, solve_path
+from gaik_core.solution import Solution, Solutions, Status, Trace
+from gaik_core.solver import solve, solve_batch, solve_path
 from gaik_core.targets import Pointing, Pose
 from gaik_core.update_rules import (
     RULES,

@@ -13,7 +13,7 @@ from gaik_core.checks import array_of, finite, finite_vector
 from gaik_core.errors import GaikError, ShapeError, UnknownNameError
 from gaik_core.joint import Joint
 from gaik_core.kernels import kinematics as kernels
-from gaik_core.kernels.limits import project
+from gaik_core.kernels.limits import can_hold
 from gaik_core.packing import pack, without_limits
 
 Array = NDArray[np.float64]
@@ -95,8 +95,10 @@ class KinematicChain:
         self.offset = axes[:, 10]
         self.limited = bool(np.isfinite(limits).any() or len(held))
         self.reach = float(ends[11])
-        if len(held) and not project(axes, couplings, limits, held, self.home.copy()):
-            raise GaikError(f"{name}: no joint values within their limits bring every axis within its axis_limits")
+        if len(held) and not can_hold(axes, couplings, limits, held, self.home.copy()):
+            raise GaikError(
+                f"{name}: no joint values within their limits bring every axis within its axis_limits"
+            )
 
     def __repr__(self) -> str:
         return f"KinematicChain({self.name!r}, joints={list(self.joint_names)})"
@@ -115,7 +117,11 @@ class KinematicChain:
 
     @classmethod
     def from_urdf(
-        cls, text_or_path: str | Path, base: str | None = None, tip: str | None = None, name: str | None = None
+        cls,
+        text_or_path: str | Path,
+        base: str | None = None,
+        tip: str | None = None,
+        name: str | None = None,
     ) -> KinematicChain:
         """The chain between two links of a URDF, given as text or path: see `gaik_core.urdf.chain_from_urdf`.
 

@@ -27,17 +27,20 @@ def finite(what: str, array: Array) -> Array:
     return array
 
 
-def vector(what: str, value: ArrayLike, length: int) -> Array:
-    """`value` as an array (length,), not yet known to be finite."""
-    array = array_of(what, value)
+def copied_vector(what: str, value: ArrayLike, length: int) -> Array:
+    """A copy of `value` as an array (length,), contiguous and not yet known to be finite."""
+    try:
+        array = np.array(value, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise GaikError(f"{what} is {value!r}; expected an array of numbers") from None
     if array.shape != (length,):
-        raise ShapeError(what, np.shape(value), f"({length},)")
+        raise ShapeError(what, array.shape, f"({length},)")
     return array
 
 
 def finite_vector(what: str, value: ArrayLike, length: int) -> Array:
     """`value` as a finite array (length,)."""
-    return finite(what, vector(what, value, length))
+    return finite(what, copied_vector(what, value, length))
 
 
 def rows(what: str, value: ArrayLike, length: int) -> Array:
@@ -60,6 +63,8 @@ def positive(what: str, value: float) -> float:
 
 def count(what: str, value: int) -> int:
     """`value`, a whole number of at least 0."""
+    if type(value) is int and value >= 0:
+        return value
     if isinstance(value, bool) or not isinstance(value, int | np.integer) or value < 0:
         raise GaikError(f"{what} is {value!r}; expected a whole number of at least 0")
     return int(value)

@@ -3,88 +3,27 @@
 from __future__ import annotations
 
 import math
-from enum import StrEnum
-from typing import NamedTuple
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from gaik_core.batch import BatchProblem, BatchResult, solve_in_parallel
 from gaik_core.chain import KinematicChain, algebra_code
-from gaik_core.checks import count, finite, positive, rows, vector
+from gaik_core.checks import array_of, copied_vector, count, finite, finite_vector, positive, rows
 from gaik_core.errors import GaikError, ShapeError
 from gaik_core.kernels import descent as kernels
+from gaik_core.kernels import many
+from gaik_core.kernels.kinematics import Chain
 from gaik_core.kernels.task import POSITION
+from gaik_core.solution import STATUS, Solution, Solutions, Trace
 from gaik_core.targets import Target, pack_target
 from gaik_core.update_rules import Adam, UpdateRule
 
 Array = NDArray[np.float64]
 
 
-class Status(StrEnum):
-    """How a solve ended."""
-
-    CONVERGED = "converged"
-    ITERATION_LIMIT = "iteration_limit"
-    STAGNATED = "stagnated"
-    UNREACHABLE = "unreachable"
-    """The lengths of the links prove that no angles reach the target."""
-    LIMITED = "limited"
-    """Held off the target by joint limits."""
-
-
-STATUS = (Status.CONVERGED, Status.ITERATION_LIMIT, Status.STAGNATED, Status.UNREACHABLE, Status.LIMITED)
-
-
-class Trace(NamedTuple):
-    """Every iterate of a solve, its start included.
-
-    Attributes:
-        angles: (iterations + 1, dof).
-        error: (iterations + 1,) distance from the target (m).
-        orientation_error: (iterations + 1,) angle from the target (rad); zero for a position.
-    """
-
-    angles: Array
-    error: Array
-    orientation_error: Array
-
-
-class Solution(NamedTuple):
-    """The end of a solve.
-
-    Attributes:
-        angles: (dof,) the last angles.
-        error: distance |target - forward(angles)| (m).
-        iterations: updates made, over all attempts; 0 where the start satisfied the tolerance.
-        converged: whether the error is below the tolerance, and the orientation's error below its own.
-        status: how the solve ended.
-        trace: every iterate, where it was asked for.
-        orientation_error: angle from the target's orientation or direction (rad); 0 for a position.
-        restarts: how many other starts were tried.
-    """
-
-    angles: Array
-    error: float
-    iterations: int
-    converged: bool
-    status: Status
-    trace: Trace | None = None
-    orientation_error: float = 0.0
-    restarts: int = 0
-
-
-class Solutions(NamedTuple):
-    """The ends of m solves: as Solution, with a first axis (m,) everywhere."""
-
-    angles: Array
-    error: Array
-    iterations: NDArray[np.int64]
-    converged: NDArray[np.bool_]
-    status: NDArray[np.str_]
-    trace: None = None
-    orientation_error: Array | None = None
-    restarts: NDArray[np.int64] | None = None
-
+__all__ = ["Solution", "Solutions", "Trace", "random_starts", "solve", "solve_batch", "solve_path"]
 
 _ADAM = Adam()
 _NO_TRACE = np.empty((0, 2))
@@ -130,17 +69,11 @@ def solve(
         GaikError: an argument of the wrong shape, not finite, out of range or unknown; the message names it.
     """
     kind, wanted = pack_target(target)
-    angles = vector("start", chain.home if start is None else start, chain.dof).copy()
-    stop = (
-        positive("tolerance", tolerance),
-        positive("orientation_tolerance", orientation_tolerance),
-        _weight(chain, kind, orientation_weight),
-        rule.window,
-        count("max_iterations", max_iterations),
-    )
-    held = chain.limited if limits is None else limits
-    packed = chain.packed if held else chain.packed_without_limits
-    problem = (algebra_code(algebra), packed, kind, wanted, stop, rule.kernel, rule.settings, angles)
+    angles = copied_vector("start", chain.home if start is None else start, chain.dof)
+    stop = _stop(chain, kind, rule, tolerance, orientation_tolerance, orientation_weight, max_iterations)
+    problem = (
+        algebra_code(algebra), _packed(chain, limits), kind, wanted, stop, rule.kernel, rule.settings, angles
+    )  # fmt: skip
     if trace:
         return _solve_traced(problem, restarts)
     used = 0
@@ -149,40 +82,123 @@ def solve(
         status, iterations, error, turn, used = kernels.solve_with_restarts(*problem, starts)
     else:
         status, iterations, error, turn = kernels.solve_once(*problem, _NO_TRACE, _NO_TRACE)
-    _raise_if_not_finite(status, wanted, angles)
-    return Solution(angles, error, iterations, status == kernels.CONVERGED, STATUS[status], None, turn, used)
+    if status == kernels.NOT_FINITE:
+        _raise_not_finite(wanted, angles)
+    return Solution._make(
+        (angles, error, iterations, status == kernels.CONVERGED, STATUS[status], None, turn, used)
+    )
 
 
 def solve_batch(
-    chain: KinematicChain, targets: ArrayLike, start: ArrayLike | None = None, **options: object
+    chain: KinematicChain,
+    targets: ArrayLike,
+    start: ArrayLike | None = None,
+    algebra: str = "quaternion",
+    rule: UpdateRule = _ADAM,
+    tolerance: float = 5e-3,
+    max_iterations: int = 1000,
+    *,
+    limits: bool | None = None,
+    restarts: int = 0,
+    seed: int = 0,
+    workers: int | None = None,
 ) -> Solutions:
-    """Solve m positions (m, 3), each from the same start (dof,) or from its own (m, dof); options as for `solve`."""
+    """Solve m positions, each for itself, on all processors: by LevenbergMarquardt, sixteen in lock step on each.
+
+    Args:
+        chain: the arm.
+        targets: (m, 3) positions in m.
+        start: (dof,) for all of them, or (m, dof) for each; the chain's home by default.
+        algebra: as for `solve`, like the rest but for the last.
+        rule: how an update follows from the error and the Jacobian.
+        tolerance: distance below which a solve converges (m).
+        max_iterations: how many updates each may make.
+        limits: whether to hold the joint limits.
+        restarts: how many other starts each may try.
+        seed: of those starts.
+        workers: how many processors to use; all that the process may use by default.
+
+    Returns:
+        A Solution of arrays: the numbers that `solve` gives for each target, to rounding.
+
+    Raises:
+        GaikError: as for `solve`; not one NaN among the targets is taken.
+    """
     points = rows("targets", targets, 3)
-    first = np.asarray(chain.home if start is None else start, dtype=float)
+    first = array_of("start", chain.home if start is None else start)
     if first.shape not in ((chain.dof,), (len(points), chain.dof)):
         raise ShapeError("start", first.shape, f"({chain.dof},) or ({len(points)}, {chain.dof})")
-    starts = np.broadcast_to(first, (len(points), chain.dof))
-    return _gather(chain, [solve(chain, p, s, **options) for p, s in zip(points, starts, strict=True)])  # type: ignore[arg-type]
+    finite("start", first)
+    result = BatchResult.of(np.broadcast_to(first, (len(points), chain.dof)).copy())
+    problem = BatchProblem(
+        algebra_code(algebra),
+        _packed(chain, limits),
+        points,
+        _stop(chain, POSITION, rule, tolerance, 1.0, None, max_iterations),
+        rule,
+        random_starts(chain, count("restarts", restarts), seed),
+    )
+    solve_in_parallel(problem, result, count("workers", workers) if workers is not None else None)
+    return result.solutions()
 
 
 def solve_path(
-    chain: KinematicChain, targets: ArrayLike, start: ArrayLike | None = None, **options: object
+    chain: KinematicChain,
+    targets: ArrayLike,
+    start: ArrayLike | None = None,
+    algebra: str = "quaternion",
+    rule: UpdateRule = _ADAM,
+    tolerance: float = 5e-3,
+    max_iterations: int = 1000,
+    *,
+    limits: bool | None = None,
+    largest_step: float = math.pi / 4,
 ) -> Solutions:
-    """Solve positions (m, 3) in order, each from the angles of the one before (section 4.3); options as for `solve`."""
-    angles = chain.home if start is None else start
-    solutions = []
-    for point in rows("targets", targets, 3):
-        solutions.append(solve(chain, point, angles, **options))  # type: ignore[arg-type]
-        angles = solutions[-1].angles
-    return _gather(chain, solutions)
+    """Solve positions in order, each from the angles of the one before (section 4.3), without a change of branch.
+
+    Args:
+        chain: the arm.
+        targets: (m, 3) positions in m, one after the other.
+        start: (dof,) angles before the first; the chain's home by default.
+        algebra: as for `solve`, like the rest but for the last.
+        rule: how an update follows from the error and the Jacobian.
+        tolerance: distance below which a target is reached (m).
+        max_iterations: how many updates each target may take.
+        limits: whether to hold the joint limits.
+        largest_step: no joint moves further than this (rad or m) from one target to the next. What would is solved
+            again in pieces of the straight way between them; where even the smallest jumps, the status is stagnated.
+
+    Returns:
+        A Solution of arrays.
+
+    Raises:
+        GaikError: as for `solve`.
+    """
+    points = rows("targets", targets, 3)
+    first = finite_vector("start", chain.home if start is None else start, chain.dof)
+    result = BatchResult.of(np.empty((len(points), chain.dof)))
+    stop = _stop(chain, POSITION, rule, tolerance, 1.0, None, max_iterations)
+    bound = positive("largest_step", largest_step)
+    if len(points):
+        many.solve_along(
+            algebra_code(algebra), _packed(chain, limits), POSITION, points, stop, rule.kernel, rule.settings,
+            first, bound, result.angles, result.counts, result.errors,
+        )  # fmt: skip
+    return result.solutions()
 
 
+@lru_cache(maxsize=64)
 def random_starts(chain: KinematicChain, count: int, seed: int) -> Array:
-    """Angles (count, dof) drawn evenly from inside the limits, or from a turn either way where there are none."""
+    """Angles (count, dof) drawn evenly from inside the limits, or from a turn either way where there are none.
+
+    Kept, and so read-only: a solve that needs no restart does not pay for drawing them.
+    """
     low = np.where(np.isfinite(chain.lower), chain.lower, -math.pi)
     high = np.where(np.isfinite(chain.upper), chain.upper, math.pi)
     low, high = np.minimum(low, high), np.maximum(low, high)
-    return np.random.default_rng(seed).uniform(low, high, (count, chain.dof))
+    starts = np.random.default_rng(seed).uniform(low, high, (count, chain.dof))
+    starts.flags.writeable = False
+    return starts
 
 
 def _solve_traced(problem: kernels.Problem, restarts: int) -> Solution:
@@ -193,32 +209,46 @@ def _solve_traced(problem: kernels.Problem, restarts: int) -> Solution:
     length = stop[-1] + 1
     trace_angles, trace_errors = np.empty((length, len(angles))), np.empty((length, 2))
     status, iterations, error, turn = kernels.solve_once(*problem, trace_angles, trace_errors)
-    _raise_if_not_finite(status, target, angles)
+    if status == kernels.NOT_FINITE:
+        _raise_not_finite(target, angles)
     made = slice(iterations + 1)
     kept = Trace(trace_angles[made].copy(), trace_errors[made, 0].copy(), trace_errors[made, 1].copy())
     return Solution(angles, error, iterations, status == kernels.CONVERGED, STATUS[status], kept, turn)
 
 
-def _raise_if_not_finite(status: int, target: Array, start: Array) -> None:
-    if status == kernels.NOT_FINITE:
-        finite("target", target)
-        finite("start", start)
+def _raise_not_finite(target: Array, start: Array) -> None:
+    finite("target", target)
+    finite("start", start)
 
 
-def _weight(chain: KinematicChain, kind: int, given: float | None) -> float:
+def _packed(chain: KinematicChain, limits: bool | None) -> Chain:
+    """The chain's arrays, with the limits to hold."""
+    held = chain.limited if limits is None else limits
+    return chain.packed if held else chain.packed_without_limits
+
+
+def _stop(
+    chain: KinematicChain,
+    kind: int,
+    rule: UpdateRule,
+    tolerance: float,
+    orientation_tolerance: float,
+    orientation_weight: float | None,
+    max_iterations: int,
+) -> kernels.Stop:
+    """What ends a descent."""
+    weight = 1.0 if kind == POSITION else _weight(chain, orientation_weight)
+    return (
+        positive("tolerance", tolerance),
+        positive("orientation_tolerance", orientation_tolerance),
+        weight,
+        rule.window,
+        count("max_iterations", max_iterations),
+    )
+
+
+def _weight(chain: KinematicChain, given: float | None) -> float:
     """Metres that one radian counts for."""
     if given is not None:
         return positive("orientation_weight", given)
-    return 1.0 if kind == POSITION or math.isinf(chain.reach) else chain.reach / math.pi
-
-
-def _gather(chain: KinematicChain, solutions: list[Solution]) -> Solutions:
-    return Solutions(
-        angles=np.array([s.angles for s in solutions]).reshape(-1, chain.dof),
-        error=np.array([s.error for s in solutions], dtype=float),
-        iterations=np.array([s.iterations for s in solutions], dtype=np.int64),
-        converged=np.array([s.converged for s in solutions], dtype=bool),
-        status=np.array([s.status.value for s in solutions], dtype=str),
-        orientation_error=np.array([s.orientation_error for s in solutions], dtype=float),
-        restarts=np.array([s.restarts for s in solutions], dtype=np.int64),
-    )
+    return 1.0 if math.isinf(chain.reach) else chain.reach / math.pi

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from gaik_core.checks import finite_vector, vector
+from gaik_core.checks import copied_vector, finite_vector
 from gaik_core.errors import GaikError
 from gaik_core.kernels.task import POINTING, POSE, POSITION
 
@@ -70,7 +70,7 @@ def pack_target(target: Target) -> tuple[int, Array]:
         return POINTING, target.packed()
     if isinstance(target, Pose):
         return POSE, target.packed()
-    return POSITION, vector("target", target, 3)
+    return POSITION, copied_vector("target", target, 3)
 
 
 def _unit(what: str, value: ArrayLike, length: int) -> Array:

@@ -16,8 +16,6 @@ from gaik_core import (
     Status,
     rule_by_name,
     solve,
-    solve_batch,
-    solve_path,
 )
 from gaik_core.errors import GaikError, NotFiniteError, ShapeError, UnknownNameError
 from gaik_core.quaternion import rotate
@@ -271,36 +269,6 @@ class TestOrientation:
         assert end.converged and end.orientation_error < 1e-2
 
 
-class TestManyTargets:
-    def test_path_is_each_solve_started_from_the_one_before(self):
-        targets = TOUCH.forward(np.linspace([0, 0.5, 0.5], [0.5, 0.9, 0.2], 20))
-        path = solve_path(TOUCH, targets, [0, 0.5, 0.5], tolerance=1e-6, rule=LevenbergMarquardt())
-        assert path.converged.all() and path.angles.shape == (20, 3) and path.error.shape == (20,)
-        start = np.array([0, 0.5, 0.5])
-        for target, angles in zip(targets, path.angles, strict=True):
-            end = solve(TOUCH, target, start, tolerance=1e-6, rule=LevenbergMarquardt())
-            assert np.allclose(end.angles, angles, atol=1e-12)
-            start = end.angles
-
-    def test_batch_is_each_solve_by_itself(self):
-        targets = table1_sphere()
-        batch = solve_batch(ARM3, targets)
-        for i in (0, 17, 199):
-            one = solve(ARM3, targets[i])
-            assert np.allclose(batch.angles[i], one.angles, atol=1e-12)
-            assert batch.iterations[i] == one.iterations and batch.status[i] == one.status
-        assert batch.converged.dtype == bool and batch.converged.shape == (200,)
-
-    def test_batch_takes_a_start_for_each(self):
-        starts = np.random.default_rng(0).uniform(0, 1, (5, 3))
-        batch = solve_batch(TOUCH, TOUCH.forward(starts), starts)
-        assert (batch.iterations == 0).all() and np.array_equal(batch.angles, starts)
-
-    def test_none_at_all(self):
-        for many in (solve_batch, solve_path):
-            assert many(TOUCH, np.empty((0, 3))).angles.shape == (0, 3)
-
-
 class TestRestarts:
     def test_find_what_one_descent_misses_and_are_repeatable(self):
         rng = np.random.default_rng(1)
@@ -354,13 +322,6 @@ class TestBadArguments:
         arguments = {"target": [0, 0, 0], **changes}
         with pytest.raises(error, match=message):
             solve(TOUCH, **arguments)
-
-    @pytest.mark.parametrize("many", [solve_path, solve_batch])
-    def test_of_many_targets_too(self, many):
-        with pytest.raises(ShapeError, match=r"targets has shape \(3,\); expected \(m, 3\)"):
-            many(TOUCH, [0, 0, 0])
-        with pytest.raises(NotFiniteError, match="targets"):
-            many(TOUCH, [[0, 0, np.nan]])
 
     def test_zero_iterations_are_allowed(self):
         end = solve(TOUCH, [0.05, 0.05, 0.0], max_iterations=0)

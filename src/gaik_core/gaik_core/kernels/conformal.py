@@ -27,10 +27,15 @@ def dot(a: Vector, b: Vector) -> float:
 
 
 @inlined
+def from_half_angle(line: Line, c: float, s: float) -> Motor:
+    """c - s L, for c and s the cosine and sine of half the angle about a unit line L."""
+    return (c, -s * line[0], -s * line[1], -s * line[2], 0.0, -s * line[3], -s * line[4], -s * line[5])
+
+
+@inlined
 def screw_rotor(line: Line, angle: float) -> Motor:
     """exp(-θ/2 L) = cos θ/2 - sin θ/2 L (eqs. 12 and 44), for a unit line L."""
-    c, s = math.cos(0.5 * angle), -math.sin(0.5 * angle)
-    return (c, s * line[0], s * line[1], s * line[2], 0.0, s * line[3], s * line[4], s * line[5])
+    return from_half_angle(line, math.cos(0.5 * angle), math.sin(0.5 * angle))
 
 
 @inlined

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaik_core.kernels.compiled import compiled, inlined
-from gaik_core.kernels.kinematics import Chain, kinematics
-from gaik_core.kernels.limits import blocked_axes, blocked_joints, hold, project
+from gaik_core.kernels.kinematics import Chain, kinematics, poses
+from gaik_core.kernels.limits import blocked_axes, blocked_joints, clamp_joints, hold_axes, project_axes
 from gaik_core.kernels.rules import SLOTS, step
 from gaik_core.kernels.task import measure, task_rows
 
@@ -59,15 +59,20 @@ def all_finite(vector: Array) -> bool:
 
 
 @inlined
-def distance_from_base(chain: Chain, target: Array) -> float:
-    """How far a target is from the first axis (m); scaled, so that 1e308 does not overflow."""
-    ends = chain[2]
-    x, y, z = abs(target[0] - ends[0]), abs(target[1] - ends[1]), abs(target[2] - ends[2])
-    largest = max(x, y, z)
+def length(x: float, y: float, z: float) -> float:
+    """Of a vector; scaled, so that 1e308 does not overflow."""
+    largest = max(abs(x), abs(y), abs(z))
     if largest == 0.0:
         return 0.0
     x, y, z = x / largest, y / largest, z / largest
-    return float(largest * math.sqrt(x * x + y * y + z * z))
+    return largest * math.sqrt(x * x + y * y + z * z)
+
+
+@inlined
+def distance_from_base(chain: Chain, target: Array) -> float:
+    """How far a target is from the first axis (m)."""
+    ends = chain[2]
+    return float(length(target[0] - ends[0], target[1] - ends[1], target[2] - ends[2]))
 
 
 @compiled
@@ -118,7 +123,8 @@ def descend(
     jacobian, state = np.empty((error.shape[0], joints)), np.zeros((SLOTS, max(SLOTS, joints)))
     previous, normal, limited = np.empty(joints), np.empty(joints), limits.shape[1] > 0
     if limited:
-        project(axes, couplings, limits, held, angles)
+        clamp_joints(limits, angles)
+        project_axes(axes, couplings, limits, held, angles)
     best, since, iterations = np.inf, 0, 0
     while True:
         kinematics(algebra, axes, couplings, ends, angles, turned, columns, pose, jacobian)
@@ -146,7 +152,8 @@ def descend(
             copy(previous, angles)
             return STAGNATED, iterations, distance, turn
         if limited:
-            hold(axes, couplings, limits, held, previous, angles)
+            clamp_joints(limits, angles)
+            hold_axes(axes, couplings, limits, held, previous, angles)
         iterations += 1
 
 
@@ -175,7 +182,9 @@ def solve_once(
     )
     if status != CONVERGED and unreachable(chain, target, stop[0]):
         status = UNREACHABLE
-        distance += distance_from_base(chain, target) - distance_from_base(chain, near)
+        pose = np.empty((1, 7))
+        poses(algebra, chain, angles.reshape((1, angles.shape[0])), pose)
+        distance = length(target[0] - pose[0, 0], target[1] - pose[0, 1], target[2] - pose[0, 2])
     return status, iterations, distance, turn
 
 

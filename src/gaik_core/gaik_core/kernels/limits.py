@@ -85,10 +85,9 @@ def axes_hold(axes: Array, couplings: Array, held: Array, angles: Array) -> bool
     return True
 
 
-@compiled
-def project(axes: Array, couplings: Array, limits: Array, held: Array, angles: Array) -> bool:
-    """Move the angles into the limits by projection onto each in turn; whether that succeeded."""
-    clamp_joints(limits, angles)
+@inlined
+def project_axes(axes: Array, couplings: Array, limits: Array, held: Array, angles: Array) -> bool:
+    """Turn each held axis into its limits, with no joint crossing its own; whether that succeeds."""
     for _ in range(SWEEPS):
         if axes_hold(axes, couplings, held, angles):
             return True
@@ -99,13 +98,15 @@ def project(axes: Array, couplings: Array, limits: Array, held: Array, angles: A
     return axes_hold(axes, couplings, held, angles)
 
 
-@compiled
-def hold(axes: Array, couplings: Array, limits: Array, held: Array, previous: Array, angles: Array) -> None:
-    """Keep an update inside the limits: projected, or cut short of the first limit it would cross.
+@inlined
+def hold_axes(
+    axes: Array, couplings: Array, limits: Array, held: Array, previous: Array, angles: Array
+) -> None:
+    """Keep an update inside the limits of the axes: projected, or cut short of the first it would cross.
 
     `previous` is inside; the limits are convex, so what lies between it and an update can be kept.
     """
-    if project(axes, couplings, limits, held, angles):
+    if project_axes(axes, couplings, limits, held, angles):
         return
     share = 1.0
     for h in range(held.shape[0]):
@@ -117,6 +118,13 @@ def hold(axes: Array, couplings: Array, limits: Array, held: Array, previous: Ar
             share = min(share, max(0.0, (held[h, 1] - begin) / (end - begin)))
     for j in range(angles.shape[0]):
         angles[j] = previous[j] + share * (angles[j] - previous[j])
+
+
+@compiled
+def can_hold(axes: Array, couplings: Array, limits: Array, held: Array, angles: Array) -> bool:
+    """Whether angles can be moved into the limits at all; moves them."""
+    clamp_joints(limits, angles)
+    return project_axes(axes, couplings, limits, held, angles)
 
 
 @inlined

@@ -34,10 +34,15 @@ def conjugate(q: Quaternion) -> Quaternion:
 
 
 @inlined
+def from_half_angle(axis: Vector, c: float, s: float) -> Quaternion:
+    """c + s n, for c and s the cosine and sine of half the angle about a unit axis n."""
+    return (c, s * axis[0], s * axis[1], s * axis[2])
+
+
+@inlined
 def from_axis_angle(axis: Vector, angle: float) -> Quaternion:
     """cos θ/2 + sin θ/2 n, for a unit axis n (eq. 4)."""
-    c, s = math.cos(0.5 * angle), math.sin(0.5 * angle)
-    return (c, s * axis[0], s * axis[1], s * axis[2])
+    return from_half_angle(axis, math.cos(0.5 * angle), math.sin(0.5 * angle))
 
 
 @inlined
