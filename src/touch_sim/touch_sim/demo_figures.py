@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
 from mpl_toolkits.mplot3d.axes3d import Axes3D
 
 from touch_sim.tracking import Run, Series, tracking_error
@@ -23,7 +24,7 @@ def draw_paths(runs: Sequence[Run], file: Path) -> None:
     figure = Figure(figsize=(5.6 * len(runs), 5.6), layout="constrained")
     for column, run in enumerate(runs, start=1):
         _draw_path(figure.add_subplot(1, len(runs), column, projection="3d"), run)
-    figure.legend(*_handles(figure), loc="outside lower center", ncols=2, frameon=False)
+    _legend(figure)
     _save(figure, file)
 
 
@@ -42,7 +43,7 @@ def draw_joints(runs: Sequence[Run], file: Path) -> None:
             panel.grid(alpha=0.3)
         axes[0, column].set_title(run.name)
         axes[-1, column].set_xlabel("time [s]")
-    figure.legend(*_handles(figure), loc="outside lower center", ncols=2, frameon=False)
+    _legend(figure)
     _save(figure, file)
 
 
@@ -54,7 +55,9 @@ def _draw_path(axes: Axes3D, run: Run) -> None:
     middle, half = (desired.max(axis=0) + desired.min(axis=0)) / 2, 0.55 * np.ptp(desired, axis=0).max()
     axes.set(xlim=_around(middle[0], half), ylim=_around(middle[1], half), zlim=_around(middle[2], half))
     axes.set_box_aspect((1, 1, 1))
-    axes.view_init(elev=24, azim=-60, vertical_axis="y")  # the paper's y is up
+    axes.view_init(elev=25, azim=35, vertical_axis="y")  # the paper's y is up, its x to the right
+    for axis in (axes.xaxis, axes.yaxis, axes.zaxis):
+        axis.set_major_locator(MaxNLocator(5))
     axes.set(xlabel="x [mm]", ylabel="y [mm]", zlabel="z [mm]")
     error = tracking_error(run)
     axes.set_title(f"{run.name}: error {1e3 * error.rms_m:.2f} mm RMS, {1e3 * error.max_m:.2f} mm at most")
@@ -71,10 +74,10 @@ def _around(middle: float, half: float) -> tuple[float, float]:
     return middle - half, middle + half
 
 
-def _handles(figure: Figure) -> tuple[list[object], list[str]]:
-    """Return the legend entries of the first panel, which are those of all."""
+def _legend(figure: Figure) -> None:
+    """Put the legend of the first panel, which is that of all, under the figure."""
     handles, labels = figure.axes[0].get_legend_handles_labels()
-    return handles, labels
+    figure.legend(handles, labels, loc="outside lower center", ncols=2, frameon=False)
 
 
 def _save(figure: Figure, file: Path) -> None:
