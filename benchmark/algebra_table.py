@@ -165,7 +165,8 @@ def meeting_lines() -> tuple[str, str]:
     ours = cga.flat_point_position(cga.meet(p, q))
     theirs = from_clifford(to_clifford(p.undual()).meet(to_clifford(q.undual())))
     found = cga.flat_point_position(theirs.dual())
-    return (*("found" if np.allclose(x, [1, 2, 3]) else "not found" for x in (found, ours)),)
+    theirs_found, ours_found = ("found" if np.allclose(x, [1, 2, 3]) else "not found" for x in (found, ours))
+    return theirs_found, ours_found
 
 
 # --- the table -------------------------------------------------------------------------------------------------------

@@ -6,6 +6,7 @@ A unit quaternion q turns a vector by q v q~; q and -q are the same rotation. An
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Self
 
 import numpy as np
@@ -255,6 +256,9 @@ class Quaternion:
         if not self.shape:
             raise TypeError("one quaternion has no length; an array of them has")
         return self.shape[0]
+
+    def __iter__(self) -> Iterator[Self]:
+        return (self[index] for index in range(len(self)))
 
     def __getitem__(self, index: object) -> Self:
         if not self.shape:

@@ -60,7 +60,7 @@ class Motor(Multivector):
         others = np.delete(x, indices, axis=-1)
         uneven = x[..., _TRANSLATION_4] - x[..., _TRANSLATION_5]
         excess = (self * ~self - 1.0).components
-        if any(np.any(np.abs(part) > 1e-9 * _size(self)) for part in (others, uneven, excess)):
+        if not all(_vanishes(part, self) for part in (others, uneven, excess)):
             raise VersorError(f"the components are not those of a unit {type(self).__name__.lower()}")
 
     # --- making one --------------------------------------------------------------------------------------------------
@@ -79,7 +79,7 @@ class Motor(Multivector):
         VersorError where L² is not -1, that is where |a - b| of eq. 13 is not 1; `line.normalised()` mends it.
         """
         _check_generator("the axis of a screw rotor is a line", line)
-        if np.any(np.abs((line * line + 1.0).components) > 1e-9 * _size(line)):
+        if not _vanishes((line * line + 1.0).components, line):
             raise VersorError("the axis of a screw rotor is a line with L² = -1; take line.normalised()")
         half = 0.5 * arrays.numbers("angle", angle)
         turn = np.cos(half) - np.sin(half) * line
@@ -147,6 +147,13 @@ class Motor(Multivector):
     def inverse(self) -> Self:
         """The reverse: M M̃ = 1."""
         return self.reverse()
+
+    def normalised(self) -> Self:
+        """M / √(M M̃): a unit motor again after a long product, whose rounding lets M M̃ drift from 1."""
+        square = (self * ~self)._components  # a + Q with Q² = 0, so 1/√ of it is (2a - Q) / (2a √a)
+        a = square[..., :1]
+        root = np.concatenate((2.0 * a, -square[..., 1:]), axis=-1) / (2.0 * a * np.sqrt(a))
+        return self._of(product(GEOMETRIC, root, self._components))
 
     @overload
     def apply(self, x: Multivector) -> Multivector: ...
@@ -230,7 +237,7 @@ class Rotor(Motor):
     def from_quaternion(cls, q: ArrayLike | Quaternion) -> Self:
         """cos θ/2 - sin θ/2 n I_e of a quaternion cos θ/2 + sin θ/2 n, `(…, 4)`; VersorError where |q| is not 1."""
         q = q.components if isinstance(q, Quaternion) else arrays.components("q", q, 4)
-        if np.any(np.abs(quaternion.norm(q) - 1.0) > 1e-9):
+        if not np.all(np.abs(quaternion.norm(q) - 1.0) <= 1e-9):
             raise VersorError("a rotor takes a unit quaternion; see quaternion.normalise")
         x = np.zeros((*q.shape[:-1], BLADES))
         x[..., _ROTOR] = q * _ROTOR_SIGNS
@@ -271,11 +278,11 @@ def _check_generator(expectation: str, bivector: Multivector) -> None:
     x = bivector.components
     others = np.delete(x, [E12, E13, E23, *_TRANSLATION_4[:3], *_TRANSLATION_5[:3]], axis=-1)
     uneven = x[..., _TRANSLATION_4] - x[..., _TRANSLATION_5]
-    if any(np.any(np.abs(part) > 1e-9 * _size(bivector)) for part in (others, uneven)):
+    if not (_vanishes(others, bivector) and _vanishes(uneven, bivector)):
         raise VersorError(f"{expectation}; this has other components")
 
 
-def _size(x: Multivector) -> Array:
-    """What rounding errors are measured against, shape `(…, 1)`."""
-    size: Array = np.maximum(1.0, np.sum(x.components**2, axis=-1, keepdims=True))
-    return size
+def _vanishes(part: Array, of: Multivector) -> bool:
+    """Whether a part of something is zero, to rounding; a NaN is not."""
+    size = np.maximum(1.0, np.sum(of.components**2, axis=-1, keepdims=True))
+    return bool(np.all(np.abs(part) <= 1e-9 * size))

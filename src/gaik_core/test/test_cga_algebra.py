@@ -297,8 +297,9 @@ def test_sequence():
     assert A[A.scalar > 0].shape == ((A.scalar > 0).sum(),)
     assert len(list(A)) == 50
     assert sum([e1, e2, e3]) == e1 + e2 + e3
-    with pytest.raises(TypeError, match="no length"):
-        len(e1)
+    for of_one in (len, iter, list):
+        with pytest.raises(TypeError, match="no length"):
+            of_one(e1)
     with pytest.raises(IndexError, match="cannot be indexed"):
         e1[0]
     with pytest.raises(IndexError):

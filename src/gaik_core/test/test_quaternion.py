@@ -188,7 +188,9 @@ def test_values_are_frozen():
 
 def test_arrays_are_indexed_by_quaternion():
     q = random_quaternions(25, 6)
-    assert len(q) == 6
+    assert len(q) == len(list(q)) == 6
+    with pytest.raises(TypeError, match="no length"):
+        list(q[0])
     np.testing.assert_array_equal(q[2].components, q.components[2])
     np.testing.assert_array_equal(q[1:4].components, q.components[1:4])
     with pytest.raises(IndexError):

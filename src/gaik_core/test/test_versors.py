@@ -94,6 +94,19 @@ def test_reverse_undoes():
     np.testing.assert_allclose((~MOTORS).apply(moved()), POINTS, atol=1e-11)
 
 
+def test_normalised_mends_a_drifted_motor():
+    drift = 1e-4 * RANDOM.normal(size=(30, 32)) * (np.abs(MOTORS.components) > 1e-9)
+    drift[:, 16:24] = drift[:, 8:16]
+    drifted = MOTORS + Multivector(drift)
+    with pytest.raises(VersorError):
+        Motor(drifted.components)
+    mended = Motor._of(drifted.components).normalised()
+    assert close(mended * ~mended, Motor.identity(), atol=1e-7)
+    assert close(mended.normalised(), Motor(mended.normalised().components))
+    assert close(mended, MOTORS, atol=2e-3)
+    assert close(MOTORS.normalised(), MOTORS)
+
+
 def test_kinds():
     rotor, translator = Rotor.from_axis_angle([0, 0, 1], 0.3), Translator.from_vector([1, 2, 3])
     assert type(rotor * rotor) is type(~rotor) is Rotor
@@ -223,6 +236,8 @@ def test_arrays_broadcast():
         (lambda: Rotor(Translator.from_vector([1, 0, 0]).components), "unit rotor"),
         (lambda: Translator(Rotor.from_axis_angle([1, 0, 0], 1.0).components), "unit translator"),
         (lambda: Rotor.from_quaternion([2, 0, 0, 0]), "unit quaternion"),
+        (lambda: Rotor.from_quaternion([np.nan, 0, 0, 0]), "unit quaternion"),
+        (lambda: Motor(np.full(32, np.nan)), "unit motor"),
         (lambda: Rotor.between([1, 0, 0], [-2, 0, 0]), "opposite"),
         (lambda: Motor.from_axis([0, 0, 0], [0, 0, 0], 1.0), "direction has the length 0"),
         (lambda: Motor.from_matrix(np.eye(3)), "expected"),

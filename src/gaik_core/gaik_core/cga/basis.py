@@ -6,6 +6,7 @@ The product of two blades is again a blade, up to its sign: e_A e_B = SIGNS[A, B
 
 from __future__ import annotations
 
+import math
 from functools import cache
 
 import numpy as np
@@ -37,8 +38,8 @@ E1, E2, E3, E12, E13, E23, E123 = 1, 2, 4, 3, 5, 6, 7
 def _sign(a: int, b: int) -> float:
     """The sign of e_A e_B: one -1 for each pair that sorting swaps, one e_i² for each factor that both share."""
     swaps = sum((a >> shift & b).bit_count() for shift in range(1, VECTORS))
-    squares = [SQUARES[bit] for bit in range(VECTORS) if a & b & 1 << bit]
-    return float((-1) ** swaps * np.prod(squares))
+    squares = math.prod(SQUARES[bit] for bit in range(VECTORS) if a & b & 1 << bit)
+    return (-1.0) ** swaps * squares
 
 
 SIGNS: Array = np.array([[_sign(a, b) for b in range(BLADES)] for a in range(BLADES)])

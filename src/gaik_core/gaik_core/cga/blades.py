@@ -12,11 +12,12 @@ from gaik_core.cga.printing import named_blade
 
 __all__: list[str] = []
 
-e1, e2, e3, e4, e5 = (wrap(named_blade(name)) for name in ("e1", "e2", "e3", "e4", "e5"))
+# by name, not by products, which would load the compiled kernels at import
+e1, e2, e3, e4, e5, Ie, I = (  # noqa: E741 - what the field calls the pseudoscalar
+    wrap(named_blade(name)) for name in ("e1", "e2", "e3", "e4", "e5", "e123", "e12345")
+)
 e0: Multivector = 0.5 * (e5 - e4)
 einf: Multivector = e4 + e5
-Ie: Multivector = e1 * e2 * e3
-I: Multivector = Ie * e4 * e5  # noqa: E741 - what the field calls it
 
 
 def __getattr__(name: str) -> Multivector:

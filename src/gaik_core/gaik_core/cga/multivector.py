@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Self
 
 import numpy as np
@@ -98,6 +99,9 @@ class Multivector:
         if not self.shape:
             raise TypeError("one multivector has no length; an array of them has")
         return self.shape[0]
+
+    def __iter__(self) -> Iterator[Self]:
+        return (self[index] for index in range(len(self)))
 
     def __getitem__(self, index: object) -> Self:
         if not self.shape:
