@@ -128,7 +128,7 @@ def finish_space(axes: Any, up: Up = "z", zoom: float = 1.0) -> None:
         axis.set_major_locator(mpl.ticker.MaxNLocator(max(2, round(5 * extent / longest))))
     axes.tick_params(pad=2)
     axes.tick_params(axis="z", pad=6)
-    axes.zaxis.labelpad = 5
+    axes.zaxis.labelpad = 10
     if up == "y":
         axes.invert_yaxis()
 

@@ -10,6 +10,7 @@ from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
@@ -130,44 +131,41 @@ def draw(title: str, sampled: Field, minima: Array, descents: dict[str, Both]) -
     """Arrows downhill, level curves, the descents, the minima."""
     figure = drawing.new_figure(7.0, 6.4)
     axes = figure.subplots()
-    first, second = np.degrees(sampled.first), np.degrees(sampled.second)
-    filled = axes.contourf(first, second, sampled.loss, levels=24, cmap="cividis")
-    axes.contour(first, second, sampled.loss, levels=12, colors="white", linewidths=0.5, alpha=0.6)
+    filled = _draw_field(axes, sampled)
     figure.colorbar(filled, ax=axes, label="loss ½|p_d - p_f|² (m²)", shrink=0.86)
-    few = slice(None, None, 4)
-    axes.quiver(
-        first[few], second[few], sampled.fall[few, few, 0], sampled.fall[few, few, 1],
-        color="white", width=0.0022, angles="xy",
-    )  # fmt: skip
     for (name, solved), colour in zip(descents.items(), ("#ff6f59", "#7fe3ff"), strict=False):
         track = np.degrees(trace(solved.quaternion).angles)
         axes.plot(*_cut_at_the_edge(track).T, color=colour, linewidth=2.2, label=f"descent from {name}")
         axes.plot(*track[0], "o", color=colour, markeredgecolor="black")
-    axes.plot(
-        *np.degrees(minima).T,
-        "*",
-        color="white",
-        markeredgecolor="black",
-        markersize=15,
-        linestyle="",
-        label="minima",
-    )
-    axes.set(
-        xlabel=r"$\theta_1$ (deg)",
-        ylabel=r"$\theta_2$ (deg)",
-        title=title,
-        xlim=(-180, 180),
-        ylim=(-180, 180),
-    )
+    star: Any = {
+        "marker": "*",
+        "color": "white",
+        "markeredgecolor": "black",
+        "markersize": 15,
+        "linestyle": "",
+    }
+    axes.plot(*np.degrees(minima).T, label="minima", **star)
+    ticks = range(-180, 181, 60)
+    axes.set(xlabel=r"$\theta_1$ (deg)", ylabel=r"$\theta_2$ (deg)", title=title, xticks=ticks, yticks=ticks)
+    axes.set(xlim=(-180, 180), ylim=(-180, 180))
     axes.set_aspect("equal")
-    axes.set_xticks(range(-180, 181, 60))
-    axes.set_yticks(range(-180, 181, 60))
-    handles: list[Any] = [
-        drawing.key("falling gradient", color="white", marker=r"$\rightarrow$", markersize=12, linestyle="")
-    ]
-    handles += axes.get_legend_handles_labels()[0]
+    arrow = drawing.key(
+        "falling gradient", color="white", marker=r"$\rightarrow$", markersize=12, linestyle=""
+    )
+    handles: list[Any] = [arrow, *axes.get_legend_handles_labels()[0]]
     figure.legend(handles=handles, loc="outside lower center", ncols=2, facecolor="0.35", labelcolor="white")
     return figure
+
+
+def _draw_field(axes: Axes, sampled: Field) -> Any:
+    """The loss as colours and level curves, its falling gradient as arrows; the colours, for a colour bar."""
+    first, second = np.degrees(sampled.first), np.degrees(sampled.second)
+    filled = axes.contourf(first, second, sampled.loss, levels=24, cmap="cividis")
+    axes.contour(first, second, sampled.loss, levels=12, colors="white", linewidths=0.5, alpha=0.6)
+    few = slice(None, None, 4)
+    across, up = sampled.fall[few, few, 0], sampled.fall[few, few, 1]
+    axes.quiver(first[few], second[few], across, up, color="white", width=0.0022, angles="xy")
+    return filled
 
 
 def _cut_at_the_edge(track: Array) -> Array:

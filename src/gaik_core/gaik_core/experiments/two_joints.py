@@ -128,7 +128,7 @@ def draw(title: str, printed: Both, working: Both) -> Figure:
     solves = ((left, PRINTED_RATE, printed), (middle, WORKING_RATE, working))
     for axes, rate, solved in solves:
         drawing.arm_on_its_way(axes, ARM, solved.quaternion.trace.angles, TARGET)  # type: ignore[union-attr]
-        drawing.plane(axes, rf"$\alpha$ = {rate:g}, {PRINTED_UPDATES} updates", (-0.16, 0.2), (-0.22, 0.16))
+        drawing.plane(axes, rf"$\alpha$ = {rate:g}, {PRINTED_UPDATES} updates", (-0.16, 0.2), (-0.22, 0.2))
     for (_, rate, solved), colour in zip(solves, (drawing.START, drawing.WAY), strict=True):
         squared = trace(solved.quaternion).error ** 2
         right.semilogy(squared, color=colour, label=rf"$\alpha$ = {rate:g}: ends at {squared[-1]:.1e} m²")
