@@ -39,7 +39,7 @@ def simulated():
 
 
 def check_schema(figures, paths):
-    """The shape that the issue pins, and nothing else."""
+    """The keys of demo.json, and no others."""
     assert set(figures) == {"paths", "nodes", "ik", "cpu_cores"}
     assert set(figures["paths"]) == set(paths)
     assert all(set(error) == {"rms_m", "max_m"} for error in figures["paths"].values())

@@ -13,6 +13,7 @@ from typing import Any, Protocol
 import numpy as np
 from rcl_interfaces.srv import SetParametersAtomically
 from rclpy.context import Context
+from rclpy.logging import LoggingSeverity
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 from std_srvs.srv import Trigger
@@ -65,6 +66,8 @@ def run_demo(
     """Follow each of `paths` for `laps` laps. Raises ValueError for a bad option, DemoError where a run fails."""
     _check_reach(options.robot, paths)
     suite = Suite(options, context)
+    for node in suite.nodes:
+        node.get_logger().set_level(LoggingSeverity.WARN)  # what is going well, the progress says
     demo = Node("demo", context=context, namespace=options.namespace)
     conductor = Conductor(suite, demo, progress)
     with running([*suite.nodes, demo], context):
