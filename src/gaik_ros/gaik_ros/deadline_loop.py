@@ -14,6 +14,7 @@ from gaik_ros.periods import PeriodWindow
 
 CATCH_UP = 0.05  # s: a lateness up to this is caught up, a longer one skipped
 LONGEST_SLEEP = 0.05  # s: how long a stop request may have to wait
+BREATH = 5e-5  # s: pause between ticks that are caught up
 
 
 class DeadlineSchedule:
@@ -121,8 +122,13 @@ class LoopThread:
                 self._on_error(error)
 
     def _round(self) -> None:
-        wait = min(loop.schedule.deadline for loop in self._loops) - time.monotonic()
+        """Sleep until the earliest deadline, then make one tick of each loop that is due."""
+        earliest = min(self._loops, key=lambda loop: loop.schedule.deadline).schedule
+        wait = earliest.deadline - time.monotonic()
         if wait > 0.0:
             time.sleep(min(wait, LONGEST_SLEEP))
+        elif wait < -earliest.period:
+            # Ticks that are caught up shall act on what has arrived meanwhile: let the executor have its turn.
+            time.sleep(BREATH)
         for loop in self._loops:
             loop.run_due(time.monotonic())

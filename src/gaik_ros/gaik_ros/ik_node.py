@@ -283,4 +283,4 @@ class IkNode(Node):
 
 def main(args: Sequence[str] | None = None) -> int:
     """Entry point of the executable."""
-    return run(IkNode, args)
+    return run(IkNode, args, TABLE)

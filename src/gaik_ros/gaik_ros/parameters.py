@@ -189,6 +189,16 @@ class ParameterTable:
                 rows.append(row)
         return ParameterTable(self.node, tuple(rows))
 
+    def help(self) -> str:
+        """What --help prints: how parameters are given, and each with its default."""
+        lines = [f"usage: {self.node} [--ros-args -p NAME:=VALUE ... --params-file FILE -r FROM:=TO ...]", ""]
+        for row in self.parameters:
+            default = "not set" if row.default is None else _shown(row.default)
+            notes = [row.range_text] if row.range_text else []
+            notes += [f"default {default}"] + ([row.unit] if row.unit and not row.range_text else [])
+            lines.append(f"  {row.name}\n      {row.description} ({', '.join(notes)})")
+        return "\n".join(lines)
+
     def defaults(self) -> ParameterSet:
         """The values of a node that is given none."""
         return ParameterSet({row.name: row.default for row in self.parameters})

@@ -256,4 +256,4 @@ class PidController(Node):
 
 def main(args: Sequence[str] | None = None) -> int:
     """Entry point of the executable."""
-    return run(PidController, args)
+    return run(PidController, args, TABLE)

@@ -24,8 +24,13 @@ from rclpy.task import Future
 from rclpy.utilities import get_default_context, remove_ros_args
 
 from gaik_ros.deadline_loop import DeadlineLoop, LoopThread
+from gaik_ros.parameters import ParameterTable
 
 WAKE = 0.1  # s: how often a spinning thread looks whether it should stop
+
+SWITCH_INTERVAL = (
+    5e-4  # s: how long a thread may keep the interpreter from another; 5 ms by default, too long here
+)
 
 BAD_ARGUMENTS = 2  # exit code for a mistake of the user
 
@@ -70,6 +75,8 @@ class Runner:
         """Spin until `stop` or until the context is shut down. Raises what a loop's tick raised."""
         for node in self._nodes:
             self._executor.add_node(node)
+        interval = sys.getswitchinterval()
+        sys.setswitchinterval(SWITCH_INTERVAL)
         self._loops.start()
         try:
             with contextlib.suppress(ExternalShutdownException):
@@ -79,6 +86,7 @@ class Runner:
         finally:
             self._loops.stop()
             self._executor.shutdown()
+            sys.setswitchinterval(interval)
         if self._loops.error is not None:
             raise self._loops.error
 
@@ -168,12 +176,18 @@ def stopped_by_signals(stop: Callable[[], None]) -> Iterator[None]:
             signal.signal(number, handler)
 
 
-def run(factory: Callable[[], Node], args: Sequence[str] | None = None) -> int:
+def run(
+    factory: Callable[[], Node], args: Sequence[str] | None = None, table: ParameterTable | None = None
+) -> int:
     """Main of every executable: make the node, spin it, end quietly. Returns the exit code.
 
-    A mistake in the arguments, parameters or names gives one line on stderr and the exit code 2.
+    A mistake in the arguments, parameters or names gives one line on stderr and the exit code 2. With a `table`,
+    --help prints its parameters.
     """
     arguments = list(sys.argv if args is None else [sys.argv[0], *args])
+    if table is not None and {"-h", "--help"} & set(arguments):
+        print(table.help())
+        return 0
     request = StopRequest()
     with stopped_by_signals(request.make):
         try:

@@ -126,4 +126,4 @@ class TrajectoryPublisher(Node):
 
 def main(args: Sequence[str] | None = None) -> int:
     """Entry point of the executable."""
-    return run(TrajectoryPublisher, args)
+    return run(TrajectoryPublisher, args, TABLE)

@@ -12,6 +12,8 @@ import pytest
 import rclpy
 from ros_bench import wait_until
 
+from gaik_ros.reference_page import table
+
 PACKAGE = Path(__file__).parents[1]
 NODES = ("ik_node", "pid_controller", "trajectory_publisher")
 PATIENCE = 60.0
@@ -105,6 +107,14 @@ def test_a_misspelt_parameter_is_pointed_out(up):
     code, _, errors = end(process)
     assert code == 0
     assert "no parameter 'gains.pp' here; did you mean 'gains.p'?" in errors
+
+
+@pytest.mark.parametrize("node", NODES)
+def test_help_names_every_parameter_and_starts_nothing(node):
+    code, output, errors = end(start(node, "--help"))
+    assert (code, errors) == (0, "")
+    for row in table(f"gaik_ros.{node}").parameters:
+        assert f"  {row.name}\n" in output
 
 
 def test_every_console_script_has_its_executable_for_ros2_run():
