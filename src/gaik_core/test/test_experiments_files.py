@@ -1,6 +1,8 @@
 """What `gaik reproduce` writes: pictures that show something and cut nothing off, numbers, a page."""
 
 import json
+import re
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -111,3 +113,18 @@ def test_an_erratum_that_fails_says_so():
 )
 def test_numbers_are_shown_as_a_reader_needs_them(value, decimals, expected):
     assert shown(value, decimals) == expected
+
+
+def test_the_committed_page_is_of_these_experiments():
+    docs = Path(__file__).parents[3] / "docs"
+    if not docs.is_dir():
+        pytest.skip("the docs are not beside the package")
+    text = (docs / "reproduction.md").read_text(encoding="utf-8")
+    for name in OWN:
+        assert f"\n## {name}\n" in text
+    for quantity in ("joints after 30 updates, α = 50", "mean updates, Adam, Fibonacci", "joints at the end"):
+        assert quantity in text
+    pictures = re.findall(r"!\[[^]]*\]\(([^)]+)\)", text)
+    assert len(pictures) >= len(PICTURES)
+    assert all((docs / picture).is_file() for picture in pictures)
+    assert "not confirmed" not in text
