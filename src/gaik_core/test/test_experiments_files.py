@@ -124,7 +124,7 @@ def test_the_committed_page_is_of_these_experiments():
         assert f"\n## {name}\n" in text
     for quantity in ("joints after 30 updates, α = 50", "mean updates, Adam, Fibonacci", "joints at the end"):
         assert quantity in text
-    pictures = re.findall(r"!\[[^]]*\]\(([^)]+)\)", text)
+    pictures = re.findall(r"^!\[.*\]\(([^)]+)\)$", text, re.M)
     assert len(pictures) >= len(PICTURES)
     assert all((docs / picture).is_file() for picture in pictures)
     assert "not confirmed" not in text
