@@ -24,10 +24,10 @@ from rclpy.signals import SignalHandlerOptions
 from std_srvs.srv import Trigger
 
 from gaik_ros.run import running
+from gaik_ros.tracking import tip_distances
 from touch_sim.demo_run import Results, run_demo
 from touch_sim.recorder import Recorder
 from touch_sim.suite import Suite, SuiteOptions
-from touch_sim.tracking import tip_distances
 
 OFF = 0.01  # m; a tip that does not follow is several times as far off
 PATIENCE = 60.0  # s for anything that takes a second or two on an idle machine

@@ -16,8 +16,9 @@ from spin_all_nodes import answered, follow, suites, wait_until
 
 from gaik_core import KinematicChain
 from gaik_core.paths import path_by_name
+from gaik_ros.tracking import tip_distances
 from touch_sim.suite import SuiteOptions
-from touch_sim.tracking import setpoint_numbers, tip_distances
+from touch_sim.tracking import setpoint_numbers
 
 NAMES = ("waist", "shoulder", "elbow")
 NODES = ("touch_sim", "pid_controller", "ik_node", "trajectory_publisher")

@@ -14,12 +14,12 @@ import pytest
 from gaik_core import KinematicChain
 from gaik_core.paths import path_by_name
 from gaik_ros.pid import Gains
+from gaik_ros.tracking import tracking_error
 from touch_sim.demo_output import write
 from touch_sim.demo_report import summary, table
 from touch_sim.demo_run import Results
 from touch_sim.loop_meter import LoopRate
 from touch_sim.simulation import Settings, simulate
-from touch_sim.tracking import tracking_error
 
 NODES = ("touch_sim", "pid_controller", "ik_node", "trajectory_publisher")
 DEMO = [sys.executable, "-m", "touch_sim.demo"]

@@ -6,8 +6,8 @@ import pytest
 from gaik_core import KinematicChain
 from gaik_core.paths import path_by_name
 from gaik_ros.pid import Gains
+from gaik_ros.tracking import tracking_error
 from touch_sim.simulation import FEED_FORWARD, Settings, simulate
-from touch_sim.tracking import tracking_error
 
 # RMS in mm: (path, setpoint rate in Hz, feed-forward) -> the independent simulation's.
 EXPECTED = {
@@ -44,7 +44,7 @@ def test_the_lag_behind_a_slow_circle_is_that_of_a_ramp(touch):
     run = simulate(touch, "circle", path_by_name("circle"), settings)
     late = 0.05 / 3.1 + 0.5e-3  # and half a step of hold
     settled = run.tip.time > 5.0
-    distance = np.linalg.norm(run.tip.values - run.lap.desired(run.tip.time), axis=1)[settled]
+    distance = np.linalg.norm(run.tip.values - run.course.desired(run.tip.time), axis=1)[settled]
     chord = 2.0 * 0.05 * np.sin(np.pi * late / 50.0)
     np.testing.assert_allclose(distance, chord, rtol=0.05)
 

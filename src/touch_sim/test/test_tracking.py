@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from gaik_core.paths import Circle, Lemniscate, path_by_name
-from touch_sim.tracking import Lap, Run, Series, lap_of, setpoint_numbers, tracking_error
+from gaik_ros.tracking import Run, Series, tracking_error
+from touch_sim.tracking import Lap, lap_of, setpoint_numbers
 
 PERIOD, RATE = 6.3, 100.0
 NOTHING = Series(np.zeros(0), np.zeros((0, 3)))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from touch_sim.demo_figures import draw_joints, draw_paths
+from gaik_ros.tracking_figures import draw_joints, draw_paths
 from touch_sim.demo_report import table, write_json
 from touch_sim.demo_run import Results
 

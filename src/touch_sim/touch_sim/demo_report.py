@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
+from gaik_ros.tracking import tracking_error
 from touch_sim.demo_run import Results
-from touch_sim.tracking import tracking_error
 
 
 def summary(results: Results) -> dict[str, Any]:

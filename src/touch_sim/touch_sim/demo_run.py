@@ -21,10 +21,11 @@ from std_srvs.srv import Trigger
 from gaik_core import KinematicChain, LevenbergMarquardt, solve_path
 from gaik_core.paths import path_by_name
 from gaik_ros.run import running
+from gaik_ros.tracking import Run
 from touch_sim.loop_meter import LoopMeter, LoopRate
 from touch_sim.recorder import Recorder, Recording
 from touch_sim.suite import Suite, SuiteOptions
-from touch_sim.tracking import Run, lap_of
+from touch_sim.tracking import lap_of
 
 ARRIVED = 1e-4  # m: so near the first point the approach is over
 SETTLE = 0.3  # s at rest there, several times the controller's slowest time

@@ -18,7 +18,7 @@ from rclpy.serialization import deserialize_message
 from sensor_msgs.msg import JointState
 
 from gaik_ros.conversions import joint_values, point_to_array
-from touch_sim.tracking import Series
+from gaik_ros.tracking import Series
 
 TOPICS: dict[str, type] = {
     "setpoint": Point,

@@ -15,9 +15,10 @@ from gaik_core import KinematicChain, solve_path
 from gaik_core.paths import Path
 from gaik_core.update_rules import LevenbergMarquardt, UpdateRule
 from gaik_ros.pid import Gains, Pid
+from gaik_ros.tracking import Run, Series
 from touch_sim.dynamics import JointDynamics, JointModel
 from touch_sim.joint_limits import JointLimits
-from touch_sim.tracking import Lap, Run, Series
+from touch_sim.tracking import Lap
 
 Array = NDArray[np.float64]
 

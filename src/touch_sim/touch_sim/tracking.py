@@ -1,8 +1,4 @@
-"""How well a path was followed: what was recorded of one run, and the error of the tip.
-
-The error is the distance from the measured tip to the path's point at the same time, never to the nearest point:
-a tip that is on the path but late is in error.
-"""
+"""The clock of a path that was followed: where the tip ought to be at any time, found from the setpoints."""
 
 from __future__ import annotations
 
@@ -13,23 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaik_core.paths import Path
+from gaik_ros.tracking import Series
 
 Array = NDArray[np.float64]
 
 MATCH = 1e-9  # m; a setpoint of the path is one of its points but for rounding
-
-
-@dataclass(frozen=True)
-class Series:
-    """Values (n, k) at times (n,) in s."""
-
-    time: Array
-    values: Array
-
-    def between(self, start: float, end: float) -> Series:
-        """Return the part from `start` s on and before `end` s."""
-        inside = (self.time >= start) & (self.time < end)
-        return Series(self.time[inside], self.values[inside])
 
 
 @dataclass(frozen=True)
@@ -44,45 +28,6 @@ class Lap:
     def desired(self, time: Array) -> Array:
         """Return where the tip ought to be (n, 3) m at times (n,) s."""
         return self.path.position(2.0 * math.pi * (time - self.start) / self.period)
-
-
-@dataclass(frozen=True)
-class Run:
-    """One path, followed: what was asked and what was measured, in s, m and rad, all on one clock."""
-
-    name: str
-    lap: Lap
-    joint_names: tuple[str, ...]
-    setpoint: Series  # (n, 3)
-    tip: Series  # (n, 3)
-    joint_reference: Series  # (n, dof)
-    joint_states: Series  # (n, dof)
-
-
-@dataclass(frozen=True)
-class TrackingError:
-    """Root mean square and largest distance in m, and the number of measured tips they were taken over."""
-
-    rms_m: float
-    max_m: float
-    samples: int
-
-
-def tip_distances(run: Run) -> Array:
-    """Return the distance (n,) m of each tip measured during the laps; those before and after do not count.
-
-    Raises ValueError where there is none.
-    """
-    tip = run.tip.between(run.lap.start, run.lap.end)
-    if not tip.time.size:
-        raise ValueError(f"no tip was measured while the {run.name} was followed")
-    return np.asarray(np.linalg.norm(tip.values - run.lap.desired(tip.time), axis=1))
-
-
-def tracking_error(run: Run) -> TrackingError:
-    """Return the error of the tip over the laps. Raises ValueError where none was measured."""
-    distance = tip_distances(run)
-    return TrackingError(float(np.sqrt((distance**2).mean())), float(distance.max()), int(distance.size))
 
 
 def lap_of(setpoints: Series, path: Path, rate: float, period: float, laps: int) -> Lap:

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 from mpl_toolkits.mplot3d.axes3d import Axes3D
 
-from touch_sim.tracking import Run, Series, tracking_error
+from gaik_ros.tracking import Run, Series, tracking_error
 
 DESIRED = {"color": "black", "linewidth": 2.6, "label": "desired"}
 FOLLOWED = {"color": "red", "linewidth": 1.1, "label": "followed"}
@@ -49,7 +49,7 @@ def draw_joints(runs: Sequence[Run], file: Path) -> None:
 
 def _draw_path(axes: Axes3D, run: Run) -> None:
     tip = _in_lap(run, run.tip)
-    desired, followed = 1e3 * run.lap.desired(tip.time + run.lap.start), 1e3 * tip.values
+    desired, followed = 1e3 * run.course.desired(tip.time + run.course.start), 1e3 * tip.values
     axes.plot(*desired.T, **DESIRED)
     axes.plot(*followed.T, **FOLLOWED)
     middle, half = (desired.max(axis=0) + desired.min(axis=0)) / 2, 0.55 * np.ptp(desired, axis=0).max()
@@ -65,9 +65,9 @@ def _draw_path(axes: Axes3D, run: Run) -> None:
 
 def _in_lap(run: Run, series: Series) -> Series:
     """Return the part of a series that counts, thinned for drawing, its time from the start of the path."""
-    part = series.between(run.lap.start, run.lap.end)
+    part = series.between(run.course.start, run.course.end)
     step = max(1, part.time.size // MOST_POINTS)
-    return Series(part.time[::step] - run.lap.start, part.values[::step])
+    return Series(part.time[::step] - run.course.start, part.values[::step])
 
 
 def _around(middle: float, half: float) -> tuple[float, float]:
