@@ -23,10 +23,10 @@ from rclpy.parameter import Parameter
 from rclpy.signals import SignalHandlerOptions
 from std_srvs.srv import Trigger
 
+from gaik_ros.recorder import Recorder
 from gaik_ros.run import running
 from gaik_ros.tracking import tip_distances
 from touch_sim.demo_run import Results, run_demo
-from touch_sim.recorder import Recorder
 from touch_sim.suite import Suite, SuiteOptions
 
 OFF = 0.01  # m; a tip that does not follow is several times as far off

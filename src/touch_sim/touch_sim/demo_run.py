@@ -20,10 +20,11 @@ from std_srvs.srv import Trigger
 
 from gaik_core import KinematicChain, LevenbergMarquardt, solve_path
 from gaik_core.paths import path_by_name
+from gaik_ros.recorder import Recorder
+from gaik_ros.recording import Recording
 from gaik_ros.run import running
 from gaik_ros.tracking import Run
 from touch_sim.loop_meter import LoopMeter, LoopRate
-from touch_sim.recorder import Recorder, Recording
 from touch_sim.suite import Suite, SuiteOptions
 from touch_sim.tracking import lap_of
 
