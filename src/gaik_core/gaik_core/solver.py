@@ -15,10 +15,11 @@ from gaik_core.errors import GaikError, ShapeError
 from gaik_core.kernels import descent as kernels
 from gaik_core.kernels import many
 from gaik_core.kernels.kinematics import Chain
+from gaik_core.kernels.posture import settle
 from gaik_core.kernels.task import POSITION
 from gaik_core.solution import STATUS, Solution, Solutions, Trace
 from gaik_core.targets import Target, pack_target
-from gaik_core.update_rules import Adam, UpdateRule
+from gaik_core.update_rules import Adam, LevenbergMarquardt, UpdateRule
 
 Array = NDArray[np.float64]
 
@@ -26,6 +27,7 @@ Array = NDArray[np.float64]
 __all__ = ["Solution", "Solutions", "Trace", "random_starts", "solve", "solve_batch", "solve_path"]
 
 _ADAM = Adam()
+_MARQUARDT = LevenbergMarquardt()
 _NO_TRACE = np.empty((0, 2))
 
 
@@ -42,6 +44,7 @@ def solve(
     trace: bool = False,
     restarts: int = 0,
     seed: int = 0,
+    posture: ArrayLike | None = None,
     orientation_tolerance: float = 1e-2,
     orientation_weight: float | None = None,
 ) -> Solution:
@@ -49,7 +52,7 @@ def solve(
 
     Args:
         chain: the arm.
-        target: (3,) a position in m, or a Pointing or a Pose.
+        target: (3,) a position in m, a Pointing, a Pose, or a Motor that moves the base frame onto the tip's.
         start: (dof,) angles to start from; the chain's home by default. Not changed; never wrapped.
         algebra: "quaternion" or "conformal": the same numbers to rounding.
         rule: how an update follows from the error and the Jacobian.
@@ -59,6 +62,8 @@ def solve(
         trace: whether to keep every iterate; not together with restarts.
         restarts: how many seeded starts inside the limits to try, one after the other, when stuck.
         seed: of those starts.
+        posture: (dof,) angles to prefer where the arm is redundant. A solve that converges then moves toward them for
+            as long as the tip stays within the tolerance. Not together with trace.
         orientation_tolerance: for a Pointing or a Pose, the angle below which the solve converges (rad).
         orientation_weight: how many metres one radian counts for in the loss; by default the chain's reach over π.
 
@@ -75,15 +80,19 @@ def solve(
         algebra_code(algebra), _packed(chain, limits), kind, wanted, stop, rule.kernel, rule.settings, angles
     )  # fmt: skip
     if trace:
-        return _solve_traced(problem, restarts)
+        return _solve_traced(problem, restarts, posture)
     used = 0
     if restarts:
         starts = random_starts(chain, count("restarts", restarts), seed)
         status, iterations, error, turn, used = kernels.solve_with_restarts(*problem, starts)
     else:
-        status, iterations, error, turn = kernels.solve_once(*problem, _NO_TRACE, _NO_TRACE)
+        status, iterations, error, turn = kernels.solve_once(*problem, kernels.IMPROVEMENT, _NO_TRACE, _NO_TRACE)
     if status == kernels.NOT_FINITE:
         _raise_not_finite(wanted, angles)
+    if posture is not None and status == kernels.CONVERGED:
+        preferred = finite_vector("posture", posture, chain.dof)
+        more, error, turn = settle(*problem[:5], _MARQUARDT.settings, preferred, angles)
+        iterations += more
     return Solution._make(
         (angles, error, iterations, status == kernels.CONVERGED, STATUS[status], None, turn, used)
     )
@@ -201,14 +210,16 @@ def random_starts(chain: KinematicChain, count: int, seed: int) -> Array:
     return starts
 
 
-def _solve_traced(problem: kernels.Problem, restarts: int) -> Solution:
+def _solve_traced(problem: kernels.Problem, restarts: int, posture: ArrayLike | None) -> Solution:
     """One descent with every iterate kept."""
     if restarts:
         raise GaikError(f"restarts is {restarts}; expected 0 with trace=True, as a trace is of one descent")
+    if posture is not None:
+        raise GaikError(f"posture is {posture}; expected None with trace=True, as a trace is of one descent")
     _, _, _, target, stop, _, _, angles = problem
     length = stop[-1] + 1
     trace_angles, trace_errors = np.empty((length, len(angles))), np.empty((length, 2))
-    status, iterations, error, turn = kernels.solve_once(*problem, trace_angles, trace_errors)
+    status, iterations, error, turn = kernels.solve_once(*problem, kernels.IMPROVEMENT, trace_angles, trace_errors)
     if status == kernels.NOT_FINITE:
         _raise_not_finite(target, angles)
     made = slice(iterations + 1)

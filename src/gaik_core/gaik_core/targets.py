@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from gaik_core.checks import copied_vector, finite_vector
 from gaik_core.errors import GaikError
 from gaik_core.kernels.task import POINTING, POSE, POSITION
+from gaik_core.versors import Motor
 
 Array = NDArray[np.float64]
 
@@ -61,7 +62,7 @@ class Pose:
         )
 
 
-Target = ArrayLike | Pointing | Pose
+Target = ArrayLike | Pointing | Pose | Motor
 
 
 def pack_target(target: Target) -> tuple[int, Array]:
@@ -70,6 +71,8 @@ def pack_target(target: Target) -> tuple[int, Array]:
         return POINTING, target.packed()
     if isinstance(target, Pose):
         return POSE, target.packed()
+    if isinstance(target, Motor):
+        return POSE, Pose(target.translation, target.rotation).packed()
     return POSITION, copied_vector("target", target, 3)
 
 

@@ -1,10 +1,10 @@
 """Real robots' URDFs, read and compared with Pinocchio: pose and Jacobian of the tip, by both algebras."""
 
-from importlib import metadata
 from typing import NamedTuple
 
 import numpy as np
 import pytest
+from shipped_urdfs import urdf_of
 from urdf_texts import EVERY_KIND, GRIPPER
 
 from gaik_core.urdf import chain_from_urdf
@@ -35,15 +35,6 @@ ROBOTS = [
     Robot(ERD, "talos_reduced.urdf", "torso_2_link", "gripper_left_fingertip_1_link", 7, 7),  # mimics by -1
     Robot(RTB, "puma560_robot.urdf", "link1", "link7", 6, 6),
 ]
-
-
-def urdf_of(robot):
-    """Path of a robot's URDF in the package that ships it."""
-    try:
-        files = metadata.files(robot.package) or []
-    except metadata.PackageNotFoundError:
-        pytest.skip(f"{robot.package} is not installed (pip install {robot.package})")
-    return next(str(file.locate()) for file in files if file.name == robot.file)
 
 
 def pinocchio_tip(model, base, tip, names, values):
@@ -81,7 +72,7 @@ def assert_agree(chain, model, base, tip):
 
 @pytest.mark.parametrize("robot", ROBOTS, ids=lambda robot: f"{robot.file.split('.')[0]}-{robot.tip}")
 def test_pose_and_jacobian_agree_with_pinocchio(robot):
-    path = urdf_of(robot)
+    path = urdf_of(robot.package, robot.file)
     chain = chain_from_urdf(path, base=robot.base, tip=robot.tip)
     assert (chain.dof, len(chain.axis_names)) == (robot.joints, robot.axes)
     assert_agree(chain, pin.buildModelFromUrdf(path, mimic=True), robot.base, robot.tip)
@@ -95,7 +86,7 @@ def test_mimic_joints_with_factors_and_offsets_agree_with_pinocchio(text, base, 
 
 
 def test_limits_are_those_pinocchio_reads():
-    path = urdf_of(ROBOTS[0])
+    path = urdf_of(ERD, "panda.urdf")
     chain, model = chain_from_urdf(path, tip="panda_link8"), pin.buildModelFromUrdf(path)
     assert np.array_equal(chain.lower, model.lowerPositionLimit[:7])
     assert np.array_equal(chain.upper, model.upperPositionLimit[:7])

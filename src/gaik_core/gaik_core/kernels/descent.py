@@ -20,11 +20,14 @@ CONVERGED, ITERATION_LIMIT, STAGNATED, UNREACHABLE, LIMITED, NOT_FINITE = range(
 IMPROVEMENT = 1e-6
 """A solve stagnates when the loss has not fallen by this share within the rule's window of updates."""
 
+IMPATIENCE = 0.2
+"""The share while other starts are left to try: a slow way is then not worth its updates."""
+
 FAR = 10.0
 """Targets further than this many reaches are pulled in."""
 
 Stop = tuple[float, float, float, int, int]
-"""Tolerance (m), orientation tolerance (rad), weight (m/rad), window and greatest number of updates."""
+"""Tolerance (m), orientation tolerance (rad), weight (m/rad), window and most updates."""
 
 Problem = tuple[int, Chain, int, Array, Stop, int, Array, Array]
 """What every solve takes: algebra, chain, kind of target, target, stop, rule, its settings, angles to start from."""
@@ -108,10 +111,11 @@ def descend(
     rule: int,
     settings: Array,
     angles: Array,
+    improvement: float,
     trace_angles: Array,
     trace_errors: Array,
 ) -> Outcome:
-    """Move `angles` in place until the error of the target is below its tolerance.
+    """Move `angles` in place until the error of the target is below its tolerance, or stops falling by `improvement`.
 
     `trace_angles` (max_iterations + 1, d) and `trace_errors` (max_iterations + 1, 2) are filled as far as the solve
     goes; of length 0, they are left alone.
@@ -136,7 +140,7 @@ def descend(
             return CONVERGED, iterations, distance, turn
         loss = square(error)
         since += 1
-        if loss < best * (1.0 - IMPROVEMENT):
+        if loss < best * (1.0 - improvement):
             best, since = loss, 0
         blocked = 0
         if limited:
@@ -167,6 +171,7 @@ def solve_once(
     rule: int,
     settings: Array,
     angles: Array,
+    improvement: float,
     trace_angles: Array,
     trace_errors: Array,
 ) -> Outcome:
@@ -178,7 +183,7 @@ def solve_once(
         return NOT_FINITE, 0, np.nan, np.nan
     near = pull_in(chain, target)
     status, iterations, distance, turn = descend(
-        algebra, chain, kind, near, stop, rule, settings, angles, trace_angles, trace_errors
+        algebra, chain, kind, near, stop, rule, settings, angles, improvement, trace_angles, trace_errors
     )
     if status != CONVERGED and unreachable(chain, target, stop[0]):
         status = UNREACHABLE
@@ -202,25 +207,30 @@ def solve_with_restarts(
 ) -> tuple[int, int, float, float, int]:
     """`solve_once`; where that gets stuck, from each row of `starts` in turn, all within one budget of updates.
 
-    Leaves in `angles` the best of all ends; the outcome counts the updates of all attempts, and after it come the
-    restarts.
+    Leaves in `angles` the best of all ends, gone on with until it stagnates. The outcome counts the updates of all
+    attempts, and after it come the restarts.
     """
     tolerance, orientation_tolerance, weight, window, budget = stop
     attempt, no_trace, restarts = angles.copy(), np.empty((0, 2)), 0
+    improvement = IMPATIENCE if starts.shape[0] > 0 else IMPROVEMENT
     status, total, distance, turn = solve_once(
-        algebra, chain, kind, target, stop, rule, settings, angles, no_trace, no_trace
+        algebra, chain, kind, target, stop, rule, settings, angles, improvement, no_trace, no_trace
     )
-    while (
-        status not in (CONVERGED, UNREACHABLE, NOT_FINITE) and total < budget and restarts < starts.shape[0]
-    ):
-        attempt[:] = starts[restarts]
-        restarts += 1
+    if starts.shape[0] == 0:
+        return status, total, distance, turn, restarts
+    while status != CONVERGED and status != NOT_FINITE and total < budget:
+        last = restarts == starts.shape[0] or status == UNREACHABLE
+        copy(angles if last else starts[restarts], attempt)
         left = (tolerance, orientation_tolerance, weight, window, budget - total)
         outcome, iterations, reached, turned = solve_once(
-            algebra, chain, kind, target, left, rule, settings, attempt, no_trace, no_trace
-        )
+            algebra, chain, kind, target, left, rule, settings, attempt,
+            IMPROVEMENT if last else IMPATIENCE, no_trace, no_trace,
+        )  # fmt: skip
         total += iterations
         if outcome == CONVERGED or reached + weight * turned < distance + weight * turn:
             status, distance, turn = outcome, reached, turned
-            angles[:] = attempt
+            copy(attempt, angles)
+        if last:
+            break
+        restarts += 1
     return status, total, distance, turn, restarts

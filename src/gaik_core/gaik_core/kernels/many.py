@@ -6,7 +6,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaik_core.kernels.compiled import compiled, inlined
-from gaik_core.kernels.descent import CONVERGED, STAGNATED, Stop, copy, solve_once, solve_with_restarts
+from gaik_core.kernels.descent import (
+    CONVERGED,
+    IMPROVEMENT,
+    STAGNATED,
+    Stop,
+    copy,
+    solve_once,
+    solve_with_restarts,
+)
 from gaik_core.kernels.kinematics import Chain
 
 Array = NDArray[np.float64]
@@ -83,7 +91,7 @@ def solve_along(
     for i in range(targets.shape[0]):
         copy(current, angles[i])
         status, iterations, distance, turn = solve_once(
-            algebra, chain, kind, targets[i], stop, rule, settings, angles[i], no_trace, no_trace
+            algebra, chain, kind, targets[i], stop, rule, settings, angles[i], IMPROVEMENT, no_trace, no_trace
         )
         halvings = 0
         while i > 0 and largest_step(angles[i], current) > bound and halvings < HALVINGS:
@@ -97,7 +105,17 @@ def solve_along(
                         targets[i, axis] - targets[i - 1, axis]
                     )
                 status, more, distance, turn = solve_once(
-                    algebra, chain, kind, piece, stop, rule, settings, angles[i], no_trace, no_trace
+                    algebra,
+                    chain,
+                    kind,
+                    piece,
+                    stop,
+                    rule,
+                    settings,
+                    angles[i],
+                    IMPROVEMENT,
+                    no_trace,
+                    no_trace,
                 )
                 iterations += more
                 jumped = jumped or largest_step(angles[i], before) > bound
