@@ -137,6 +137,7 @@ def test_effort_beyond_the_limit_moves_no_faster(effort):
     cut.step(effort, 1e-2)
     plain.step(np.clip(effort, -0.6, 0.6), 1e-2)
     np.testing.assert_array_equal(cut.angles, plain.angles)
+    np.testing.assert_array_equal(cut.effort, np.clip(effort, -0.6, 0.6))
 
 
 @pytest.mark.parametrize("effort", [[np.nan, 0.0, 0.0], [np.inf, 0.0, 0.0], [0.0, 0.0], 0.0])

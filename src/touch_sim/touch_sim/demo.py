@@ -68,11 +68,13 @@ def _demonstrate(options: argparse.Namespace, ros_arguments: list[str]) -> int:
     from rclpy.signals import SignalHandlerOptions
     from rclpy.validate_namespace import validate_namespace
 
-    from touch_sim.demo_output import write
+    from touch_sim.demo_output import write, write_bag
     from touch_sim.demo_progress import progress_for
     from touch_sim.demo_run import DemoError, run_demo
     from touch_sim.suite import SuiteOptions
 
+    if options.record:
+        import rosbags  # noqa: F401 - said now if it is missing, and not after the run
     suite = SuiteOptions(**{name: getattr(options, name) for name in SuiteOptions.__dataclass_fields__})
     paths = ("circle", "lemniscate") if options.path == "both" else (options.path,)
     try:
@@ -87,6 +89,11 @@ def _demonstrate(options: argparse.Namespace, ros_arguments: list[str]) -> int:
     finally:
         rclpy.try_shutdown()
     print(write(results, options.out))
+    try:
+        if options.record:
+            print(write_bag(results, suite.namespace, options.out))
+    except (ValueError, OSError) as reason:
+        return _complain(str(reason), FAILED)
     return 0
 
 
@@ -132,6 +139,7 @@ def _parser() -> _Parser:
         help="a robot that reaches the paths, or a robot file (touch_device)",
     )
     add("--namespace", default="", help="namespace of all nodes (none)")
+    add("--record", action="store_true", help="also keep what was heard as an MCAP bag, DIR/run")
     add("--out", type=Path, default=Path("out"), metavar="DIR", help="where to write figures and JSON (out)")
     return parser
 

@@ -54,12 +54,13 @@ class Progress(Protocol):
 
 @dataclass(frozen=True)
 class Results:
-    """What came of a demo: runs, each loop's rate by its node, and the IK node's verdicts."""
+    """What came of a demo: runs, each loop's rate by its node, the IK node's verdicts, and all that was heard."""
 
     runs: tuple[Run, ...]
     nodes: dict[str, LoopRate]
     verdicts: tuple[dict[str, str], ...]
     cpu_cores: float
+    recordings: tuple[Recording, ...] = ()
 
 
 def run_demo(
@@ -182,7 +183,7 @@ class Conductor:
             name: meter.rate(np.concatenate(self._periods[name])) for name, meter in self._meters.items()
         }
         verdicts = tuple(verdict for recording in recordings for verdict in recording.verdicts())
-        return Results(runs, nodes, verdicts, self._cpu / self._wall)
+        return Results(runs, nodes, verdicts, self._cpu / self._wall, tuple(recordings))
 
     def _run_of(self, name: str, laps: int, recording: Recording) -> Run:
         options, names, setpoints = self._suite.options, self._suite.joint_names, recording.setpoints()

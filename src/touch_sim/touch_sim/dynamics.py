@@ -55,8 +55,8 @@ def hold_factor(stiffness: Array, time_constant: Array, dt: float) -> Array:
 class JointDynamics:
     """The joints of one device: their angles, their velocity, and the step under an effort.
 
-    `angles` (dof,) rad and `velocity` (dof,) rad/s hold after the last step. A step replaces both and never
-    changes them in place, so that a caller may keep them.
+    `angles` (dof,) rad and `velocity` (dof,) rad/s hold after the last step, `effort` (dof,) N·m acted in it, cut
+    to its limit. A step replaces them and never changes them in place, so that a caller may keep them.
     """
 
     def __init__(self, model: JointModel, limits: JointLimits, angles: ArrayLike) -> None:
@@ -81,6 +81,7 @@ class JointDynamics:
         self.limits.check(start)
         self.angles: Array = start
         self.velocity: Array = np.zeros_like(start)
+        self.effort: Array = np.zeros_like(start)
 
     def step(self, effort: ArrayLike, dt: float) -> None:
         """Advance by `dt` s under the constant `effort` (dof,) N·m: the exact zero-order hold.
@@ -103,7 +104,7 @@ class JointDynamics:
         if (angles != free).any() and dt > 0.0:
             # On a limit: what the limit lets through of the velocity.
             velocity = (self.limits.hold(angles, angles + velocity * dt, self.mobility) - angles) / dt
-        self.angles, self.velocity = angles, velocity
+        self.angles, self.velocity, self.effort = angles, velocity, given
 
     def _free_velocity(self, angles: Array, effort: Array) -> Array:
         """Return θ' = (K u - κ θ)/τ in rad/s."""

@@ -149,9 +149,9 @@ class TouchSim(Node):
 
     def _tick(self, dt: float) -> None:
         with self._lock:
-            effort = self.command.effort(dt)
-            self.dynamics.step(effort, dt)
+            self.dynamics.step(self.command.effort(dt), dt)
             angles, velocity = self.encoder.read(self.dynamics.angles, self.dynamics.velocity, dt)
+            effort = self.dynamics.effort
         self._publish(angles, velocity, effort)
         if self.command.lost != self._braking:
             self._report_command()
@@ -161,7 +161,7 @@ class TouchSim(Node):
         self._tip.header.stamp = self._state.header.stamp
         fill(self._state, "position", angles)
         fill(self._state, "velocity", velocity)
-        fill(self._state, "effort", np.clip(effort, -self.dynamics.effort_limit, self.dynamics.effort_limit))
+        fill(self._state, "effort", effort)
         self._state_publisher.publish(self._state)
         self._set_tip(angles)
         self._tip_publisher.publish(self._tip)
