@@ -1,0 +1,143 @@
+"""MCAP bags that `ros2 bag`, Foxglove and PlotJuggler open, written by rosbags. Needs no ROS."""
+
+from __future__ import annotations
+
+import shutil
+import struct
+from collections.abc import Sequence
+from pathlib import Path
+from types import TracebackType
+from typing import TYPE_CHECKING, Any, Final
+
+from gaik_core.errors import GaikError
+from gaik_ros.recording import Raw, Recording
+
+if TYPE_CHECKING:
+    from rosbags.typesys.store import Typestore
+
+VERSION: Final = 9  # of the bag's format: rosbag2's of Jazzy
+
+
+class BagError(GaikError):
+    """A bag that cannot be written or read; the message is one line for the user."""
+
+
+def need_rosbags() -> None:
+    """Raise BagError where the package that bags are written and read by is missing."""
+    try:
+        import rosbags  # noqa: F401
+    except ImportError:
+        raise BagError("bags need rosbags, which is not installed: pip install rosbags") from None
+
+
+def typestore() -> Typestore:
+    """The definitions of Jazzy's messages."""
+    from rosbags.typesys import Stores, get_typestore
+
+    return get_typestore(Stores.ROS2_JAZZY)
+
+
+class BagWriter:
+    """A bag in a new folder `run`: the file run/run.mcap and its metadata. A context manager."""
+
+    def __init__(self, folder: Path, replace: bool = False) -> None:
+        """Begin the bag; with `replace`, one of that name that is there stays until this one is complete.
+
+        Raises:
+            BagError: rosbags is missing, the folder is there and may not be replaced or is no bag, or cannot be made.
+        """
+        need_rosbags()
+        if folder.exists() and not (replace and (folder / "metadata.yaml").is_file()):
+            raise BagError(f"{folder} exists already; bags are not overwritten")
+        from rosbags.rosbag2 import StoragePlugin, Writer
+
+        self._folder = folder
+        # rosbags names the file after the folder, so the place until it is complete is another folder's.
+        self._place = folder.parent / f".{folder.name}.part" / folder.name if folder.exists() else folder
+        if self._place != folder:
+            shutil.rmtree(self._place.parent, ignore_errors=True)
+        self._writer = Writer(self._place, version=VERSION, storage_plugin=StoragePlugin.MCAP)
+        try:
+            self._writer.open()
+        except OSError as reason:
+            raise BagError(f"the bag {folder} cannot be made: {reason.strerror or reason}") from None
+        self._types = typestore()
+        self._connections: dict[str, Any] = {}
+        self.counts: dict[str, int] = {}
+
+    def knows(self, type_name: str) -> bool:
+        """Whether messages of this type can be written."""
+        return type_name in self._types.types
+
+    def write(self, topic: str, type_name: str, nanoseconds: int, data: bytes) -> None:
+        """Add a message as it is on the wire, `nanoseconds` after 1970. BagError: its type is not known."""
+        connection = self._connections.get(topic)
+        if connection is None:
+            if not self.knows(type_name):
+                raise BagError(f"{topic} has the type {type_name}, whose definition is not known here")
+            connection = self._writer.add_connection(topic, type_name, typestore=self._types)
+            self._connections[topic], self.counts[topic] = connection, 0
+        self._writer.write(connection, nanoseconds, data)
+        self.counts[topic] += 1
+
+    def write_text(self, topic: str, nanoseconds: int, text: str) -> None:
+        """Add a std_msgs/String."""
+        name = "std_msgs/msg/String"
+        message = self._types.types[name](data=text)
+        self.write(topic, name, nanoseconds, bytes(self._types.serialize_cdr(message, name)))
+
+    @property
+    def file(self) -> Path:
+        """The bag's file, once it is complete."""
+        return self._folder / f"{self._folder.name}.mcap"
+
+    def close(self) -> None:
+        """Complete the bag: without it no tool opens the file."""
+        self._writer.close()
+        if self._place != self._folder:
+            shutil.rmtree(self._folder)
+            self._place.rename(self._folder)
+            self._place.parent.rmdir()
+
+    def __enter__(self) -> BagWriter:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+
+def write_recordings(
+    folder: Path,
+    recordings: Sequence[Recording],
+    namespace: str,
+    description: str = "",
+    replace: bool = False,
+) -> Path:
+    """Write a suite's recordings, one after the other, as one bag; return its file.
+
+    A `description`, the robot's URDF, becomes the first message, where tools that show the robot look for it.
+    """
+    space = f"/{namespace.strip('/')}".rstrip("/")
+    with BagWriter(folder, replace) as writer:
+        if description:
+            first = min(
+                time_of(raw) for recording in recordings for kept in recording.raw.values() for raw in kept
+            )
+            writer.write_text(f"{space}/robot_description", first, description)
+        for recording in recordings:
+            for topic, kept in recording.raw.items():
+                for raw in kept:
+                    writer.write(f"{space}/{topic}", recording.types[topic], time_of(raw), raw[1])
+    return writer.file
+
+
+def time_of(raw: Raw) -> int:
+    """When a message was received, in ns; its stamp where that was not noted, as for those that have one."""
+    nanoseconds, data = raw
+    if nanoseconds:
+        return nanoseconds
+    little_endian = data[1] == 1  # of the four bytes before the message
+    seconds, rest = struct.unpack_from("<iI" if little_endian else ">iI", data, 4)
+    return int(seconds * 1_000_000_000 + rest)
