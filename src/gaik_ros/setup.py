@@ -26,6 +26,7 @@ setup(
     # On a ROS 2 machine rclpy comes with ROS; elsewhere these wheels bring it.
     extras_require={
         "rclpy": ["ros-jazzy-rclpy[fastrtps]", "ros-jazzy-common-interfaces"],
+        "bags": ["rosbags>=0.11"],
         "test": ["pytest"],
     },
     python_requires=">=3.11",
@@ -39,6 +40,9 @@ setup(
             "ik_node = gaik_ros.ik_node:main",
             "pid_controller = gaik_ros.pid_controller:main",
             "trajectory_publisher = gaik_ros.trajectory_publisher:main",
-        ]
+        ],
+        "gaik.commands": [
+            "plot = gaik_ros.cli.plot:COMMAND",
+        ],
     },
 )

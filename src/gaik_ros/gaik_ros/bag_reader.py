@@ -35,7 +35,8 @@ def read_bag(path: Path, namespace: str | None = None) -> Recording:
                 raw[topics[connection.topic]].append((nanoseconds, bytes(data)))
     except (ReaderError, OSError, AssertionError) as reason:
         words = " ".join(str(reason).split()) or "it is no bag"
-        raise BagError(f"{path}: {words} (`mcap recover` mends a file that was not closed)") from None
+        hint = " (`mcap recover` mends a file that was not closed)" if path.suffix == ".mcap" else ""
+        raise BagError(f"{path}: {words}{hint}") from None
     store = typestore()
     return Recording(raw, TOPICS, lambda data, type_name: store.deserialize_cdr(data, type_name))
 

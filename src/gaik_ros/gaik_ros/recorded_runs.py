@@ -45,10 +45,10 @@ def runs_of(recording: Recording, chain: KinematicChain, gap: float = GAP) -> li
     """Return the runs: setpoints less than `gap` s apart make one; a single one does not, unless all are.
 
     A recording without tips, as a real device's may be, has them computed from the joint states by `chain`. The way
-    to the first setpoint comes before the run and does not count.
+    to the first setpoint comes before the run and does not count. Runs without any tip are left out.
 
     Raises:
-        BagError: there is no finite setpoint.
+        BagError: there is no finite setpoint, or no run with a tip.
         JointMessageError: the joints of the reference, or of `chain` where there is none, are not in joint_states.
     """
     setpoints = recording.setpoints()
@@ -60,18 +60,13 @@ def runs_of(recording: Recording, chain: KinematicChain, gap: float = GAP) -> li
     tip = recording.tips()
     if not tip.time.size:
         tip = Series(states.time, chain.forward(recording.joints("joint_states", chain.joint_names).values))
-    parts = _parts(setpoints, gap)
+    courses = [_course(part, tip, gap) for part in _parts(setpoints, gap)]
+    followed = [course for course in courses if tip.between(course.start, course.end).time.size]
+    if not followed:
+        raise BagError("neither tip nor joint states were recorded while there were setpoints")
     return [
-        Run(
-            f"run {number}" if len(parts) > 1 else "run",
-            _course(part, tip, gap),
-            names,
-            part,
-            tip,
-            reference,
-            states,
-        )
-        for number, part in enumerate(parts, start=1)
+        Run(f"run {number}", course, names, course.setpoints, tip, reference, states)
+        for number, course in enumerate(followed, start=1)
     ]
 
 
