@@ -40,9 +40,11 @@ setup(
             "ik_node = gaik_ros.ik_node:main",
             "pid_controller = gaik_ros.pid_controller:main",
             "trajectory_publisher = gaik_ros.trajectory_publisher:main",
+            "record = gaik_ros.record:main",
         ],
         "gaik.commands": [
             "plot = gaik_ros.cli.plot:COMMAND",
+            "replay = gaik_ros.cli.replay:COMMAND",
         ],
     },
 )

@@ -9,7 +9,6 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
-from geometry_msgs.msg import PointStamped
 from numpy.typing import NDArray
 from rclpy.node import Node
 from rclpy.qos import QoSProfile, ReliabilityPolicy
@@ -59,10 +58,15 @@ class Recorder:
         """Return how many messages of a topic were received."""
         return len(self._raw[topic])
 
+    def newest(self, topic: str) -> Any:
+        """Return the newest message of a topic since the last `take`, None where there is none."""
+        kept = self._raw[topic]
+        return _deserialize(kept[-1][1], self._types[topic]) if kept else None
+
     def tip_now(self) -> Array | None:
-        """Return the newest tip (3,) m, None before the first."""
-        kept = self._raw["tip"]
-        return point_to_array(deserialize_message(kept[-1][1], PointStamped).point) if kept else None
+        """Return the newest tip (3,) m since the last `take`, None where there is none."""
+        message = self.newest("tip")
+        return None if message is None else point_to_array(message.point)
 
 
 def _deserialize(data: bytes, type_name: str) -> Any:

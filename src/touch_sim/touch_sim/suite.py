@@ -58,10 +58,17 @@ class SuiteOptions:
 class Suite:
     """The four nodes, not yet running; `nodes` is what to run. Raises ValueError for an option a node refuses."""
 
-    def __init__(self, options: SuiteOptions, context: Context | None = None) -> None:
+    def __init__(
+        self,
+        options: SuiteOptions,
+        context: Context | None = None,
+        parameters: Mapping[str, Mapping[str, Value]] | None = None,
+    ) -> None:
+        """`parameters` by the node's name go before the options."""
         self.options = options
         self.joint_names = tuple(KinematicChain.load(options.robot).joint_names)
-        parameters = options.parameters(self.joint_names)
+        values = options.parameters(self.joint_names)
+        further = parameters or {}
         made: list[Node] = []
         try:
             for factory, name in (
@@ -74,7 +81,7 @@ class Suite:
                     factory(
                         context=context,
                         namespace=options.namespace,
-                        parameter_overrides=_overrides(parameters[name]),
+                        parameter_overrides=_overrides({**values[name], **further.get(name, {})}),
                     )
                 )
         except BaseException:
@@ -83,6 +90,15 @@ class Suite:
             raise
         self.nodes: tuple[Node, ...] = tuple(made)
         self.twin, self.controller, self.ik, self.trajectory = made
+
+
+def twin_nodes(
+    robot: str, namespace: str, context: Context, parameters: Mapping[str, Mapping[str, Value]]
+) -> tuple[Node, ...]:
+    """Return a suite's nodes without the trajectory publisher: what the entry point group `gaik.suites` asks for."""
+    suite = Suite(SuiteOptions(robot=robot, namespace=namespace), context, parameters)
+    suite.trajectory.destroy_node()
+    return tuple(node for node in suite.nodes if node is not suite.trajectory)
 
 
 def _overrides(values: Mapping[str, Value]) -> list[Parameter]:
