@@ -49,7 +49,7 @@ $(VENV)/ready: requirements.txt constraints.txt $(DESCRIBED)
 	@echo "Making $(VENV) from requirements.txt: about a minute, 600 MB, once."
 	@test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
 	@$(INSTALL) --requirement requirements.txt
-	@$(INSTALL) --no-build-isolation --no-deps $(addprefix --editable ,$(PACKAGES))
+	@$(INSTALL) --use-pep517 --no-build-isolation --no-deps $(addprefix --editable ,$(PACKAGES))
 	@echo "Compiling the kernels: about 20 s, once."
 	@$(BIN)/python -m gaik_core.kernels
 	@touch $@

@@ -49,11 +49,11 @@ def measure_batch(problem: Problem, peers: Sequence[type[Solver]], rounds: int) 
 
 def _ways() -> list[tuple[str, dict[str, Any]]]:
     cores = os.cpu_count() or 1
-    if "threads" not in inspect.signature(solve_batch).parameters:
+    if "workers" not in inspect.signature(solve_batch).parameters:
         return [("gaik solve_batch", {})]
     return [
-        ("gaik solve_batch, 1 core", {"threads": 1}),
-        (f"gaik solve_batch, {cores} cores", {"threads": cores}),
+        ("gaik solve_batch, 1 core", {"workers": 1}),
+        (f"gaik solve_batch, {cores} cores", {"workers": cores}),
     ]
 
 
