@@ -208,7 +208,7 @@ class IkNode(Node):
         answer = self._follower.solve(setpoint.position)
         elapsed = time.perf_counter() - began
         with self._lock:
-            self._follower.accept(setpoint.position, setpoint.time, answer)
+            self._follower.accept(setpoint.position, setpoint.time, setpoint.sequence, answer)
             self._publish_reference(time.monotonic())
         self._setpoint = setpoint
         self._solved += 1

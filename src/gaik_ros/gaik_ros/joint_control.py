@@ -41,6 +41,7 @@ class ControlSettings:
     state_timeout: float = 0.1  # s
     on_reference_timeout: str = HOLD
     approach_speed: float = 1.0  # rad/s, of each joint
+    extrapolation: float = 0.0  # s: for how long a reference goes on at its velocity until the next one
 
 
 class JointControl:
@@ -83,10 +84,12 @@ class JointControl:
         reference: Array | None,
         reference_velocity: Array | float,
         reference_age: float,
+        reference_unchanged: float = 0.0,
     ) -> Array:
         """The effort (joints,) N·m.
 
         `state` and `reference` are (joints,) rad or None if never heard, ages s, `dt` s since the last step.
+        `reference_unchanged` is for how long (s) the reference has been the same position, heard again or not.
         """
         powerless = self._powerless(state, state_age, reference, reference_age)
         if powerless is not None or state is None:
@@ -96,7 +99,8 @@ class JointControl:
         if reference is None or reference_age > self.settings.reference_timeout:
             target, velocity = self._hold()
         else:
-            target, velocity = self._follow(reference, reference_velocity, dt)
+            ahead = min(reference_unchanged, self.settings.extrapolation) * reference_velocity
+            target, velocity = self._follow(reference + ahead, reference_velocity, dt)
         return self._pid.step(target - state, dt, velocity)
 
     def _powerless(

@@ -98,6 +98,14 @@ TABLE = ParameterTable(
         Parameter(
             "approach_speed", 2.0, "rad/s", "limit on the way to a reference after a start or a pause", 0.001
         ),
+        Parameter(
+            "reference_extrapolation",
+            0.015,
+            "s",
+            "for how long a reference goes on at its velocity until the next one comes; 0: a staircase",
+            0.0,
+            0.1,
+        ),
         *LOOP_PARAMETERS,
     ),
 )
@@ -120,6 +128,7 @@ def settings_of(values: ParameterSet) -> ControlSettings:
         state_timeout=values.state_timeout,
         on_reference_timeout=values.on_reference_timeout,
         approach_speed=values.approach_speed,
+        extrapolation=values.reference_extrapolation,
     )
 
 
@@ -129,7 +138,7 @@ class _Heard:
     def __init__(self, position: Array | None, velocity: Array | float = 0.0) -> None:
         self.position = position
         self.velocity = velocity
-        self.time = time.monotonic()
+        self.time = self.since = time.monotonic()  # since: when this position was heard first
 
 
 class PidController(Node):
@@ -176,7 +185,10 @@ class PidController(Node):
         except JointMessageError as reason:
             self._watch.refuse("joint_reference", reason)
             return
-        self._reference = _Heard(position, velocity)
+        heard, before = _Heard(position, velocity), self._reference
+        if before.position is not None and (position == before.position).all():
+            heard.since = before.since
+        self._reference = heard
 
     def _on_state(self, message: JointState) -> None:
         stamp = (message.header.stamp.sec, message.header.stamp.nanosec)
@@ -200,6 +212,7 @@ class PidController(Node):
                 reference.position,
                 reference.velocity,
                 now - reference.time,
+                now - reference.since,
             )
         fill(self._command, "effort", effort)
         stamp_now(self._command.header.stamp, self.get_clock())

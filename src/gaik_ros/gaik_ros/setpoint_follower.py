@@ -57,9 +57,12 @@ class SetpointFollower:
         """The answer for a setpoint (3,) m; nothing moves by it yet."""
         return self._ik.solve(setpoint, self._angles)
 
-    def accept(self, setpoint: Array, received: float, answer: Answer) -> None:
-        """Go to an answer, with the velocity that the setpoints have where the answer reaches its own."""
-        velocity = self._motion.add(setpoint, received)
+    def accept(self, setpoint: Array, received: float, number: int, answer: Answer) -> None:
+        """Go to an answer, with the velocity that the setpoints have where the answer reaches its own.
+
+        `number` counts the setpoints received, those among them that were never solved too.
+        """
+        velocity = self._motion.add(setpoint, received, number)
         rates = None
         if answer.result is Result.REACHED and velocity.any():
             rates = self._ik.chain.inverse_velocity(answer.angles, velocity)

@@ -16,12 +16,19 @@ class Loop:
         self.control = JointControl(1, gains or Gains(), ControlSettings(**settings))
         self.angle = np.array([angle])
         self.reference, self.velocity, self.reference_age, self.state_age = None, 0.0, 0.0, 0.0
+        self.unchanged = 0.0
         self.efforts, self.angles = [], []
 
     def run(self, seconds):
         for _ in range(round(seconds / DT)):
             effort = self.control.step(
-                DT, self.angle, self.state_age, self.reference, self.velocity, self.reference_age
+                DT,
+                self.angle,
+                self.state_age,
+                self.reference,
+                self.velocity,
+                self.reference_age,
+                self.unchanged,
             )
             self.efforts.append(effort[0])
             self.angles.append(self.angle[0])
@@ -69,6 +76,25 @@ def test_once_there_it_follows_without_a_limit():
     loop.refer(0.4).run(0.002)
     assert loop.control.mode is Mode.FOLLOWING
     np.testing.assert_array_equal(loop.control.held, [0.4])
+
+
+def test_between_references_it_may_go_on_at_their_velocity_for_a_while():
+    speed, period, lag, ripple = 0.5, 10, [], []
+    for extrapolation in (0.0, 0.015):
+        loop = Loop(angle=0.0, extrapolation=extrapolation, gains=Gains(feed_forward=TAU))
+        for k in range(1000):
+            if k % period == 0:
+                loop.refer(speed * k * DT, speed)
+            loop.unchanged = (k % period) * DT
+            loop.run(DT)
+        lag.append(speed * np.arange(500, 1000) * DT - loop.angles[500:])
+        ripple.append(np.ptp(loop.efforts[500:]))
+    assert lag[0].mean() == pytest.approx(speed * 0.0045, rel=0.1)  # half a period, which a staircase costs
+    assert np.abs(lag[1]).max() < 1e-4
+    assert ripple[1] < 0.05 * ripple[0]
+    loop.unchanged = 0.1
+    loop.run(0.01)
+    assert loop.control.held[0] == pytest.approx(speed * (990 * DT + 0.015))
 
 
 def test_a_silent_reference_is_held_without_a_jump_and_then_approached_again():

@@ -22,7 +22,7 @@ def follower(**settings):
 
 def answer(made, setpoint, now):
     found = made.solve(np.asarray(setpoint, dtype=float))
-    made.accept(np.asarray(setpoint, dtype=float), now, found)
+    made.accept(np.asarray(setpoint, dtype=float), now, round(now / PERIOD), found)
     made.advance(now)
     return found
 
