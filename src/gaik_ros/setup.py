@@ -27,6 +27,7 @@ setup(
     extras_require={
         "rclpy": ["ros-jazzy-rclpy[fastrtps]", "ros-jazzy-common-interfaces"],
         "bags": ["rosbags>=0.11"],
+        "viewer": ["viser>=1.1,<2"],
         "test": ["pytest"],
     },
     python_requires=">=3.11",
@@ -40,6 +41,7 @@ setup(
             "ik_node = gaik_ros.ik_node:main",
             "pid_controller = gaik_ros.pid_controller:main",
             "trajectory_publisher = gaik_ros.trajectory_publisher:main",
+            "viewer = gaik_ros.viewer.node:main",
             "record = gaik_ros.record:main",
         ],
         "gaik.commands": [

@@ -35,6 +35,7 @@ setup(
         "console_scripts": [
             "touch_sim = touch_sim.touch_sim_node:main",
             "demo = touch_sim.demo:main",
+            "view = touch_sim.view:main",
         ],
         "gaik.suites": ["twin = touch_sim.suite:twin_nodes"],
     },

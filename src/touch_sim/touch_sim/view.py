@@ -1,0 +1,128 @@
+"""The whole suite with the twin, and a live page of it in the browser, in one process.
+
+    python -m touch_sim.view        ros2 run touch_sim view        make view
+
+Options are read with nothing but Python, and the rest is imported after that, so that a missing module can be
+said in one line.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+from collections.abc import Sequence
+
+from touch_sim.demo import BAD_OPTION, FAILED, INSTALL
+
+INSTALL_VIEW = INSTALL | {"viser": "'viser>=1.1,<2'", "rich": "'viser>=1.1,<2'"}
+
+EPILOG = """\
+On the page: drag the ball (in the plane of the screen) or an arrow (along one axis), and the arm follows; or start a
+path. The sliders and lists set the nodes' real parameters.
+
+Arguments after --ros-args go to the nodes: --ros-args -p pid_controller:gains.p:=5.0
+"""
+
+
+def main(args: Sequence[str] | None = None) -> int:
+    """Entry point of the executable; returns the exit code."""
+    arguments = list(sys.argv[1:] if args is None else args)
+    cut = arguments.index("--ros-args") if "--ros-args" in arguments else len(arguments)
+    options = _parser().parse_args(arguments[:cut])
+    try:
+        return _view(options, arguments[cut:])
+    except ModuleNotFoundError as missing:
+        name = (missing.name or "").split(".")[0]
+        return _complain(
+            f"Python module {name} is missing; install it with: "
+            f"{sys.executable} -m pip install {INSTALL_VIEW.get(name, name)}",
+            FAILED,
+        )
+
+
+def _view(options: argparse.Namespace, ros_arguments: list[str]) -> int:
+    """Run the suite and the viewer until a signal; returns the exit code."""
+    import rclpy
+    from rclpy.exceptions import NameValidationException
+    from rclpy.impl.implementation_singleton import rclpy_implementation
+    from rclpy.parameter import Parameter
+    from rclpy.signals import SignalHandlerOptions
+
+    from gaik_ros.run import spin_together
+    from gaik_ros.viewer.node import Viewer
+    from touch_sim.description import ORIGIN_FRAME, touch_urdf
+    from touch_sim.suite import Suite, SuiteOptions
+
+    touch = options.robot in ("touch", "touch_device")
+    parameters = {
+        "robot": options.robot,
+        "host": options.host,
+        "port": options.port,
+        "open_browser": options.browser and _has_screen(),
+        "urdf": touch_urdf() if touch else "",
+        "origin_frame": ORIGIN_FRAME if touch else "",
+    }
+    try:
+        rclpy.init(args=["view", *ros_arguments], signal_handler_options=SignalHandlerOptions.NO)
+        suite = Suite(
+            SuiteOptions(
+                robot=options.robot,
+                rate=options.rate,
+                feed_forward=options.feed_forward,
+                namespace=options.namespace,
+            )
+        )
+        viewer = Viewer(
+            namespace=options.namespace,
+            parameter_overrides=[Parameter(name, value=value) for name, value in parameters.items()],
+        )
+        print(f"The page is at {viewer.page.address}; Ctrl-C ends it.", flush=True)
+        spin_together([*suite.nodes, viewer])
+    except (ValueError, OSError, NameValidationException, rclpy_implementation.RCLError) as reason:
+        return _complain(str(reason), BAD_OPTION)
+    finally:
+        rclpy.try_shutdown()
+    return 0
+
+
+def _has_screen() -> bool:
+    """Whether a browser could be shown: without a screen the one that opens would fill the terminal."""
+    return sys.platform in ("darwin", "win32") or any(
+        os.environ.get(name) for name in ("DISPLAY", "WAYLAND_DISPLAY")
+    )
+
+
+class _Parser(argparse.ArgumentParser):
+    """Says what is wrong in one line, without the usage before it."""
+
+    def error(self, message: str) -> None:  # type: ignore[override]
+        self.exit(BAD_OPTION, f"{self.prog}: {message} (--help lists the options)\n")
+
+
+def _parser() -> _Parser:
+    parser = _Parser(
+        prog="view",
+        description="Show the suite with the twin of a Touch on a live page in the browser.",
+        epilog=EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+        allow_abbrev=False,
+    )
+    add = parser.add_argument
+    add("--port", type=int, default=8080, help="of the page, or the next that is free; 0: any (8080)")
+    add("--host", default="127.0.0.1", help="another opens the page to other machines (127.0.0.1)")
+    add("--no-browser", dest="browser", action="store_false", help="only say where the page is")
+    add("--robot", default="touch_device", help="a robot's name, or a robot file (touch_device)")
+    add("--rate", type=float, default=1000.0, metavar="HZ", help="rate of controller and twin (1000)")
+    add("--feed-forward", action="store_true", help="feed the reference's velocity forward")
+    add("--namespace", default="", help="namespace of all nodes (none)")
+    return parser
+
+
+def _complain(message: str, code: int) -> int:
+    print(f"view: {' '.join(message.split())}", file=sys.stderr)
+    return code
+
+
+if __name__ == "__main__":
+    sys.exit(main())
