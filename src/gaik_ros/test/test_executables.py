@@ -118,7 +118,7 @@ def test_help_names_every_parameter_and_starts_nothing(node):
 
 
 def test_every_console_script_has_its_executable_for_ros2_run():
-    declared = re.findall(r'"(\w+) = gaik_ros\.', (PACKAGE / "setup.py").read_text())
+    declared = re.findall(r'"(\w+) = gaik_ros[.\w]*:main', (PACKAGE / "setup.py").read_text())
     scripts = sorted((PACKAGE / "scripts").iterdir())
     assert sorted(declared) == [script.name for script in scripts]
     assert all(os.access(script, os.X_OK) for script in scripts)
