@@ -1,0 +1,203 @@
+"""Saturation, changes of parameters in motion, and letting go and taking hold."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from typing import Any
+
+import numpy as np
+from std_srvs.srv import SetBool, Trigger
+
+from gaik_ros.faults.fault import Check, Fault, Need
+from gaik_ros.faults.measures import LATE, back_on_course, largest_step, on_course
+from gaik_ros.faults.stage import Stage
+
+OVERSHOOT = 0.03  # rad; an integral wound up for 60 s overshoots by 0.1
+SMALL_STEP = 0.5  # N·m between two commands; an effort that jumps does so by its limit of 1
+HELD = 1e-6  # rad/(N·m): the gain of a device that a hand holds fast
+
+
+@contextmanager
+def _changed(stage: Stage, node: str, values: Mapping[str, Any]) -> Iterator[tuple[bool, str]]:
+    """Change parameters of a node for the length of the block."""
+    before = stage.remote.parameters(node, values)
+    answer = stage.remote.change(node, values)
+    try:
+        yield answer
+    finally:
+        stage.remote.change(node, before)
+
+
+def _saturation(seconds: float, integral_gain: float | None) -> Any:
+    """A hand holds the device for `seconds` while it is sent far away, then lets go."""
+
+    def play(stage: Stage) -> list[Check]:
+        gains = {} if integral_gain is None else {"gains.i": integral_gain}
+        limit = stage.facts.effort_max
+        target = stage.point(stage.facts.far)
+        with _changed(stage, "pid_controller", gains):
+            with _changed(stage, "touch_sim", {"gain": HELD}):
+                stage.send(target)
+                stage.wait(lambda: _arrived(stage), "the reference arrives")
+                mark = stage.mark()
+                stage.sleep(seconds)
+                efforts = stage.since(mark).joints("joint_command", stage.names, "effort").values
+            mark = stage.mark()
+            stage.sleep(2.0)
+            recording = stage.since(mark)
+        full = (np.abs(efforts) >= limit - 1e-9).any(axis=1)
+        states = recording.joints("joint_states", stage.names).values
+        goal = recording.joints("joint_reference", stage.names).values[-1]
+        beyond = (states - goal) * np.sign(goal - states[0])
+        overshoot, left = float(beyond.max()), float(np.abs(states[-1] - goal).max())
+        return [
+            Check("saturated", f"{100.0 * full.mean():.0f} % of {seconds:g} s", bool(full.mean() > 0.9)),
+            Check("no windup", f"overshoot {1e3 * overshoot:.1f} mrad", overshoot < OVERSHOOT),
+            Check("arrives", f"{1e3 * left:.1f} mrad off 2 s after the release", left < OVERSHOOT),
+        ]
+
+    return play
+
+
+def _arrived(stage: Stage) -> bool:
+    reference = stage.probe.newest("joint_reference")
+    return (
+        reference is not None and not np.any(reference.velocity) and stage.probe.age("joint_reference") < LATE
+    )
+
+
+GOOD: tuple[tuple[str, dict[str, Any]], ...] = (
+    ("pid_controller", {"gains.p": 4}),  # an integer
+    ("pid_controller", {"gains.d": 0.15, "derivative_filter_time": 0.08}),
+    ("pid_controller", {"gains.waist.p": 2.5}),
+    ("ik_node", {"algebra": "conformal"}),
+    ("ik_node", {"max_joint_speed": 1}),
+    ("ik_node", {"rule": "damped_least_squares"}),
+)
+
+BAD: tuple[tuple[str, dict[str, Any]], ...] = (
+    ("pid_controller", {"gains.p": math.nan}),
+    ("pid_controller", {"gains.p": math.inf}),
+    ("pid_controller", {"gains.p": 5.0, "gains.d": -0.3}),  # the good one must not come into force either
+    ("pid_controller", {"gains.i": "much"}),
+    ("pid_controller", {"gains.p": [1.0, 2.0]}),
+    ("pid_controller", {"u_clamp_max": 1.0, "gains.u_clamp_max": -1.0}),
+    ("pid_controller", {"rate": 10.0}),
+    ("ik_node", {"max_joint_speed": 0.0}),
+    ("ik_node", {"max_joint_speed": math.nan}),
+    ("ik_node", {"rule": "newton"}),
+    ("ik_node", {"algebra": "octonion"}),
+    ("ik_node", {"setpoint_timeout": -1.0}),
+)
+
+
+def _good_parameters(stage: Stage) -> list[Check]:
+    taken = []
+    with stage.moving():
+        mark = stage.mark()
+        for node, values in _present(stage, GOOD):
+            with _changed(stage, node, values) as (successful, _):
+                taken.append(successful)
+                stage.sleep(0.3)
+        recording = stage.since(mark)
+    step = largest_step(recording, stage.names)
+    return [
+        Check("each is taken", f"{sum(taken)} of {len(taken)}", all(taken)),
+        on_course(recording, stage.names),
+        Check("the effort does not jump", f"by {step:.2f} N·m at most", step < SMALL_STEP),
+    ]
+
+
+def _bad_parameters(stage: Stage) -> list[Check]:
+    refused, kept, reasons = 0, 0, set()
+    with stage.moving():
+        mark = stage.mark()
+        for node, values in BAD:
+            names = [name for name in values if name != "u_clamp_max"]
+            before = stage.remote.parameters(node, names)
+            successful, reason = stage.remote.change(node, values)
+            refused += not successful
+            kept += stage.remote.parameters(node, names) == before
+            reasons.add(reason)
+        stage.sleep(0.3)
+        recording = stage.since(mark)
+    one_line = all(reason and "\n" not in reason for reason in reasons)
+    return [
+        Check("each is refused", f"{refused} of {len(BAD)}", refused == len(BAD)),
+        Check("whole", f"{kept} of {len(BAD)} left all as it was", kept == len(BAD)),
+        Check("with one line that says why", "one line each" if one_line else "not each", one_line),
+        on_course(recording, stage.names),
+    ]
+
+
+def _present(
+    stage: Stage, changes: tuple[tuple[str, dict[str, Any]], ...]
+) -> list[tuple[str, dict[str, Any]]]:
+    """The changes that name no joint which this robot has not."""
+    return [
+        (node, values)
+        for node, values in changes
+        if not any(name.startswith("gains.waist.") and "waist" not in stage.names for name in values)
+    ]
+
+
+def _enable(stage: Stage) -> list[Check]:
+    with stage.moving():
+        mark = stage.mark()
+        stage.remote.call(SetBool, "pid_controller/enable", SetBool.Request(data=False))
+        stage.sleep(0.7)
+        off = stage.since(mark).joints("joint_command", stage.names, "effort").values[-20:]
+        mark = stage.mark()
+        stage.remote.call(SetBool, "pid_controller/enable", SetBool.Request(data=True))
+        back = back_on_course(stage)
+        step = largest_step(stage.since(mark), stage.names)
+        mark = stage.mark()
+        stage.remote.call(Trigger, "pid_controller/reset", Trigger.Request())
+        stage.sleep(0.5)
+        after_reset = largest_step(stage.since(mark), stage.names)
+    largest = float(np.abs(off).max(initial=0.0))
+    return [
+        Check("disabled is zero effort", f"{largest:g} N·m", len(off) > 0 and largest == 0.0),
+        back,
+        Check("enable does not jump", f"by {step:.2f} N·m at most", step < SMALL_STEP),
+        Check("reset does not jump", f"by {after_reset:.2f} N·m at most", after_reset < SMALL_STEP),
+    ]
+
+
+FAULTS = (
+    Fault(
+        "saturation",
+        "A hand holds the device for 3 s while it is sent far away, then lets go; integral gain 1.",
+        "The effort stands at its limit; the integral does not wind up, so the arm does not overshoot.",
+        _saturation(3.0, 1.0),
+        frozenset({Need.TWIN}),
+    ),
+    Fault(
+        "long_saturation",
+        "The same for 60 s, with the integral gain as it is.",
+        "The effort stands at its limit; the integral does not wind up, so the arm does not overshoot.",
+        _saturation(60.0, None),
+        frozenset({Need.TWIN}),
+        long=True,
+    ),
+    Fault(
+        "good_parameters",
+        "Gains (an integer among them), algebra, rule and speed limit are changed in motion.",
+        "Each is taken, without a jump of the effort; the arm stays on course.",
+        _good_parameters,
+    ),
+    Fault(
+        "bad_parameters",
+        "NaN, infinite, negative and wrong parameters are set in motion, some beside good ones.",
+        "Each change is refused whole, with one line that says why; the old set stays in force.",
+        _bad_parameters,
+    ),
+    Fault(
+        "enable_in_motion",
+        "The controller is disabled, enabled and reset while the setpoints go on.",
+        "Disabled is zero effort; enabled it takes hold where the device is, and follows again without a jump.",
+        _enable,
+    ),
+)

@@ -1,0 +1,124 @@
+"""What is measured of a recording, and the checks made of it."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gaik_ros.faults.fault import Check
+from gaik_ros.faults.probe import HealthReport, Recording
+from gaik_ros.faults.stage import Stage
+from gaik_ros.health import ERROR, WARN
+
+Array = NDArray[np.float64]
+
+LATE = 1.0  # s a busy machine may add to any time that is promised; the table has what was measured
+ON_COURSE = 0.1  # rad: an arm that follows is a tenth of that behind, one that does not several times as much
+STILL = 4e-3  # rad: an arm that is held moves less
+
+
+def lag(recording: Recording, names: list[str]) -> float:
+    """The largest angle between device and reference over a recording, rad; infinite where one is silent."""
+    state = recording.joints("joint_states", names)
+    reference = recording.joints("joint_reference", names)
+    known = np.isfinite(state.values).all(axis=1)
+    if not known.any() or not reference.received.size:
+        return float("inf")
+    held = np.searchsorted(reference.received, state.received[known], side="right") - 1
+    away = np.abs(state.values[known] - reference.values[np.maximum(held, 0)])
+    return float(away[held >= 0].max(initial=0.0))
+
+
+def on_course(recording: Recording, names: list[str], promise: str = "the arm stays on course") -> Check:
+    """The arm follows its reference all the time."""
+    behind = lag(recording, names)
+    return Check(promise, f"at most {1e3 * behind:.0f} mrad behind", behind < ON_COURSE)
+
+
+def back_on_course(stage: Stage, seconds: float = 1.0) -> Check:
+    """After what happened the arm follows again: measured over `seconds` from the moment it does."""
+    names = stage.names
+
+    def follows() -> bool:
+        state, reference = stage.angles(), stage.probe.newest("joint_reference")
+        if state is None or reference is None or stage.probe.age("joint_states") > 0.1:
+            return False
+        return bool(np.abs(np.array(reference.position) - state).max() < ON_COURSE)
+
+    taken = stage.wait(follows, "the arm follows again")
+    mark = stage.mark()
+    stage.wait(lambda: stage.since(mark).count("joint_states") > 100, "joint_states come again")
+    stage.sleep(seconds)
+    behind = float(np.median(_lags(stage.since(mark), names)))
+    return Check(
+        "follows again", f"{taken:.2f} s later, then {1e3 * behind:.0f} mrad behind", behind < ON_COURSE
+    )
+
+
+def _lags(recording: Recording, names: list[str]) -> Array:
+    state = recording.joints("joint_states", names)
+    reference = recording.joints("joint_reference", names)
+    held = np.searchsorted(reference.received, state.received, side="right") - 1
+    usable = (held >= 0) & np.isfinite(state.values).all(axis=1)
+    if not usable.any():
+        return np.array([np.inf])
+    return np.asarray(np.abs(state.values[usable] - reference.values[held[usable]]).max(axis=1))
+
+
+def at_rest_since(recording: Recording, topic: str, names: list[str], field: str, still: float) -> float:
+    """When the values of a topic last differed from their final ones by more than `still`, s; 0 if never."""
+    joints = recording.joints(topic, names, field)
+    if not joints.received.size:
+        return 0.0
+    away = np.abs(joints.values - joints.values[-1]).max(axis=1) > still
+    return float(joints.received[away].max(initial=0.0))
+
+
+def let_go(recording: Recording, names: list[str], since: float, timeout: float) -> Check:
+    """The controller gives zero effort within `timeout` of `since`, and keeps to it."""
+    commands = recording.joints("joint_command", names, "effort")
+    acting = np.abs(commands.values).max(axis=1) > 0.0
+    after = float(commands.received[acting].max(initial=since)) - since
+    zeros = int((~acting & (commands.received > since)).sum())
+    return Check(
+        f"zero effort {timeout:g} s after the last good state",
+        f"after {after:.3f} s",
+        zeros >= 10 and after < timeout + LATE,
+    )
+
+
+def stopped(recording: Recording, names: list[str], since: float, timeout: float) -> Check:
+    """The device is at rest within `timeout` of `since`, and stays."""
+    states = recording.joints("joint_states", names)
+    moving = at_rest_since(recording, "joint_states", names, "position", STILL)
+    after = max(0.0, moving - since)
+    later = int((states.received > max(moving, since)).sum())
+    return Check(
+        f"the arm is at rest {timeout:g} s later",
+        f"after {after:.3f} s",
+        later >= 50 and after < timeout + LATE,
+    )
+
+
+def reported(recording: Recording, part: str, level: bytes, promise: str = "") -> Check:
+    """/diagnostics reports `part` at `level` or above at least once."""
+    reports = recording.health(part)
+    worst = max(reports, key=lambda report: report.level, default=HealthReport(0.0, b"", "no report", {}))
+    words = {WARN: "WARN", ERROR: "ERROR"}
+    return Check(
+        promise or f"/diagnostics says {words[level]}",
+        f'"{worst.message}"',
+        bool(worst.level) and worst.level >= level,
+    )
+
+
+def largest_step(recording: Recording, names: list[str]) -> float:
+    """The largest change of the effort from one command to the next, N·m."""
+    efforts = recording.joints("joint_command", names, "effort").values
+    return float(np.abs(np.diff(efforts, axis=0)).max(initial=0.0))
+
+
+def longest_gap(recording: Recording, topic: str) -> float:
+    """The longest time between two messages of a topic, s; infinite where there are not two."""
+    received = recording.received(topic)
+    return float(np.diff(received).max()) if received.size > 1 else float("inf")

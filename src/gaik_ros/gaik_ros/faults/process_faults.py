@@ -1,0 +1,141 @@
+"""Nodes that stall, die and are restarted, each in turn."""
+
+from __future__ import annotations
+
+import signal
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+import numpy as np
+
+from gaik_ros.faults.fault import Check, Fault, Need
+from gaik_ros.faults.measures import back_on_course, let_go, longest_gap, reported, stopped
+from gaik_ros.faults.probe import Recording
+from gaik_ros.faults.stage import Stage
+from gaik_ros.health import ERROR, WARN
+
+STALL = 0.2  # s
+WATCHED = 1.5  # s after a node's end: long enough for a report on /diagnostics
+
+DEVICE, CONTROLLER, IK, TRAJECTORY = "touch_sim", "pid_controller", "ik_node", "trajectory_publisher"
+NEEDS = frozenset({Need.PROCESSES})
+PROMISES = {
+    DEVICE: "The controller gives zero effort after the state timeout and says ERROR",
+    CONTROLLER: "The device brakes to rest after its command timeout",
+    IK: "The controller holds the arm after the reference timeout and says WARN",
+    TRAJECTORY: "The last setpoint is carried out and held",
+}
+
+
+def _stall(node: str) -> Fault:
+    def play(stage: Stage) -> list[Check]:
+        others = stage.own_processes.identities
+        with stage.moving():
+            mark = stage.mark()
+            stage.own_processes.stall(node, STALL)
+            back = back_on_course(stage)
+            gap = longest_gap(stage.since(mark), "joint_command")
+        same = stage.own_processes.identities == others
+        return [
+            Check("stalled", f"longest gap of commands {1e3 * gap:.0f} ms", True),
+            back,
+            Check("nothing is restarted", "nothing was" if same else "a process is another", same),
+        ]
+
+    return Fault(
+        f"stall_{node}",
+        f"{node} stands still for {1e3 * STALL:.0f} ms.",
+        "It does not make up for the time at once: efforts and reference stay bounded, and the arm follows again.",
+        play,
+        NEEDS,
+    )
+
+
+def _end(node: str, number: signal.Signals, verb: str) -> Fault:
+    quietly = number is not signal.SIGKILL
+
+    def play(stage: Stage) -> list[Check]:
+        processes = stage.own_processes
+        with _leading(stage, node):
+            others = {name: identity for name, identity in processes.identities.items() if name != node}
+            mark, ended = stage.mark(), time.monotonic()
+            code, errors = processes.end(node, number)
+            stage.sleep(WATCHED)
+            recording = stage.since(mark)
+            processes.start(node)
+            back = back_on_course(stage)
+            kept = others.items() <= processes.identities.items()
+        checks = [_consequence(stage, node, recording, ended), back]
+        checks.append(Check("no other is restarted", "none was" if kept else "a process is another", kept))
+        if quietly:
+            said = errors.strip().splitlines()[-1:] if "Traceback" in errors else []
+            checks.insert(
+                0, Check("ends with 0", f"exit code {code}{' '.join(['', *said])}", code == 0 and not said)
+            )
+        return checks
+
+    return Fault(
+        f"{verb}_{node}",
+        f"{number.name} to {node} in the middle of a motion, and a restart.",
+        f"{'It ends with 0 and without a traceback. ' if quietly else ''}{PROMISES[node]}; once it is back, the arm "
+        "follows again and no other node was restarted.",
+        play,
+        NEEDS,
+    )
+
+
+@contextmanager
+def _leading(stage: Stage, node: str) -> Iterator[None]:
+    """Lead the arm to and fro for the length of the block, by the trajectory publisher where that is the one."""
+    if node != TRAJECTORY:
+        with stage.moving():
+            stage.sleep(0.3)
+            yield
+        return
+    mark = stage.mark()
+    stage.own_processes.start(TRAJECTORY)
+    try:
+        stage.wait(lambda: stage.since(mark).count("setpoint") > 20, "the trajectory publisher leads")
+        yield
+    finally:
+        stage.own_processes.end(TRAJECTORY, signal.SIGINT)
+
+
+def _consequence(stage: Stage, node: str, recording: Recording, ended: float) -> Check:
+    """What the end of `node` at the time `ended` must lead to."""
+    facts, names = stage.facts, stage.names
+    if node == DEVICE:
+        silent = let_go(recording, names, ended, facts.state_timeout)
+        loud = reported(recording, "pid_controller: control", ERROR)
+        return _both(silent, loud)
+    if node == CONTROLLER:
+        return stopped(recording, names, ended, stage.command_timeout())
+    held = stopped(recording, names, ended, facts.reference_timeout + _way_left(recording, stage))
+    return _both(held, reported(recording, "pid_controller: control", WARN)) if node == IK else held
+
+
+def _way_left(recording: Recording, stage: Stage) -> float:
+    """How long the way to the last reference takes, s: it is still gone."""
+    reference = recording.joints("joint_reference", stage.names).values
+    states = recording.joints("joint_states", stage.names).values
+    if not len(reference) or not len(states):
+        return 0.0
+    return float((np.abs(reference[-1] - states[0]) / stage.facts.speed_limit).max())
+
+
+def _both(first: Check, second: Check) -> Check:
+    return Check(
+        f"{first.promise}; {second.promise}",
+        f"{first.measured}; {second.measured}",
+        first.holds and second.holds,
+    )
+
+
+NODES = (DEVICE, CONTROLLER, IK, TRAJECTORY)
+FAULTS = (
+    *(_stall(node) for node in (DEVICE, CONTROLLER, IK)),
+    *(_end(node, signal.SIGKILL, "kill") for node in NODES),
+    *(_end(node, signal.SIGINT, "interrupt") for node in NODES),
+    *(_end(node, signal.SIGTERM, "terminate") for node in NODES),
+)

@@ -1,0 +1,117 @@
+"""Plays faults one after the other against one suite, and has the arm recover in between."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import ExitStack, contextmanager
+
+import rclpy
+from rclpy.context import Context
+from rclpy.signals import SignalHandlerOptions
+
+from gaik_ros.faults.cable import DEVICE_TOPIC, Cable
+from gaik_ros.faults.facts import read_facts
+from gaik_ros.faults.fault import Check, Fault, Need, Outcome, StageError
+from gaik_ros.faults.invariants import efforts_bounded, nodes_alive, recovers, reference_bounded
+from gaik_ros.faults.probe import Probe
+from gaik_ros.faults.remote import Remote
+from gaik_ros.faults.stage import NotSeenError, Stage
+from gaik_ros.faults.suite_processes import SuiteProcesses
+from gaik_ros.run import running
+
+DEVICE = "touch_sim"
+DISCOVERY = 10.0  # s for nodes that are there to be seen
+STARTING = 60.0  # s for nodes to come up
+
+
+class Rig:
+    """One suite and what the injector has to do with it."""
+
+    def __init__(self, stage: Stage, lasting_cable: bool) -> None:
+        """`lasting_cable`: the user has put the cable in, so it stays."""
+        self.stage = stage
+        self._lasting_cable = lasting_cable
+
+    def lacks(self, fault: Fault) -> str:
+        """Why a fault cannot be played against this suite; empty if it can."""
+        own = self.stage.processes is not None
+        if Need.PROCESSES in fault.needs and not own:
+            return "it needs nodes that it can stop and restart: give --start-suite"
+        if Need.CABLE in fault.needs and not own and self.stage.cable is None:
+            return (
+                f"it needs joint_states to come through it: start the device with -r joint_states:={DEVICE_TOPIC} "
+                f"and give --cable {DEVICE_TOPIC}, or give --start-suite"
+            )
+        if Need.TWIN in fault.needs and DEVICE not in self.stage.present():
+            return "it needs the twin touch_sim as the device"
+        return ""
+
+    def play(self, fault: Fault) -> Outcome:
+        """Play one fault. StageError: it cannot be played here, or the arm does not come to rest before it."""
+        lack = self.lacks(fault)
+        if lack:
+            raise StageError(f"{fault.name} cannot be played: {lack}")
+        stage = self.stage
+        self._connect(Need.CABLE in fault.needs)
+        stage.probe.forget()
+        try:
+            stage.settle()
+        except NotSeenError as error:
+            raise StageError(f"{fault.name} cannot be played, not seen before it: {error}") from error
+        began, mark = time.monotonic(), stage.mark()
+        try:
+            checks = list(fault.play(stage))
+        except NotSeenError as missing:
+            checks = [Check(str(missing), "not seen", False)]
+        alive, recovery = nodes_alive(stage), recovers(stage)
+        recording = stage.since(mark)
+        always = (efforts_bounded(recording, stage), reference_bounded(recording, stage), alive, recovery)
+        return Outcome(fault, (*checks, *always), time.monotonic() - began)
+
+    def _connect(self, through_cable: bool) -> None:
+        """Put the cable in or take it out, where the device is a process of ours."""
+        stage = self.stage
+        if stage.processes is None or self._lasting_cable or through_cable == (stage.cable is not None):
+            return
+        stage.processes.end(DEVICE, 15)
+        if stage.cable is not None:
+            stage.cable.remove()
+        stage.cable = Cable(stage.probe) if through_cable else None
+        stage.processes.start(DEVICE, *(["-r", f"joint_states:={DEVICE_TOPIC}"] if through_cable else []))
+
+
+@contextmanager
+def rig(
+    namespace: str = "",
+    start_suite: bool = False,
+    cable: str = "",
+    arguments: Mapping[str, Sequence[str]] | None = None,
+) -> Iterator[Rig]:
+    """Join a running suite, or start one; StageError: there is none, or it does not come up.
+
+    `cable` is the topic of the device's joint_states where they shall come through the injector; `arguments` by node
+    are for a suite that is started.
+    """
+    with ExitStack() as stack:
+        context = stack.enter_context(_context())
+        processes = stack.enter_context(SuiteProcesses(namespace, arguments)) if start_suite else None
+        if processes is not None:
+            processes.start_suite()
+        probe = Probe(namespace, context)
+        stack.enter_context(running([probe], context))
+        remote = Remote(probe)
+        stage = Stage(probe, remote, read_facts(remote, STARTING if start_suite else DISCOVERY))
+        stage.processes = processes
+        stage.cable = Cable(probe, cable) if cable else None
+        yield Rig(stage, bool(cable))
+
+
+@contextmanager
+def _context() -> Iterator[Context]:
+    context = Context()
+    rclpy.init(context=context, signal_handler_options=SignalHandlerOptions.NO)
+    try:
+        yield context
+    finally:
+        rclpy.try_shutdown(context=context)
