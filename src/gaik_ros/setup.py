@@ -43,6 +43,7 @@ setup(
             "trajectory_publisher = gaik_ros.trajectory_publisher:main",
             "viewer = gaik_ros.viewer.node:main",
             "record = gaik_ros.record:main",
+            "touch_adapter = gaik_ros.touch_adapter:main",
         ],
         "gaik.commands": [
             "plot = gaik_ros.cli.plot:COMMAND",

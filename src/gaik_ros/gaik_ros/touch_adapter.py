@@ -1,0 +1,281 @@
+"""The node `touch_adapter`: a driver's joint states in our conventions, and our joint commands in the driver's.
+
+Drivers hold the last force that they were told. So this node tells them zero whenever the command or the state it was
+made from is too old, and when it ends.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from geometry_msgs.msg import PointStamped
+from numpy.typing import NDArray
+from rclpy.clock import Clock, ClockType
+from rclpy.node import Node
+from rclpy.qos import QoSProfile, ReliabilityPolicy
+from sensor_msgs.msg import JointState
+
+from gaik_core import KinematicChain
+from gaik_ros import qos
+from gaik_ros.conversions import JointMessageError, array_to_point, fill, joint_state, joint_values, stamp_now
+from gaik_ros.driver_conventions import JointConvention, signed_axes, tip_force
+from gaik_ros.drivers import DEFAULT, DRIVERS, JOINT_STATE
+from gaik_ros.health import ERROR, OK, WARN, Health, HealthReporter
+from gaik_ros.message_types import message_class
+from gaik_ros.parameters import Parameter, ParameterSet, ParameterTable
+from gaik_ros.run import run
+from gaik_ros.watch import Watch
+
+Array = NDArray[np.float64]
+
+LOOK = 0.01  # s between looks at the ages
+DRIVER_STATE = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)  # fits any driver's offer
+DRIVER_COMMAND = QoSProfile(depth=1, reliability=ReliabilityPolicy.RELIABLE)  # fits any driver's request
+
+
+ROWS = (
+    Parameter(
+        "driver",
+        DEFAULT,
+        "",
+        "the driver, whose conventions are the other parameters' defaults",
+        choices=tuple(DRIVERS),
+        read_only=True,
+    ),
+    Parameter(
+        "robot", "touch_device", "", "a robot of gaik_core, or the path of a robot file", read_only=True
+    ),
+    Parameter("state_topic", "", "", "of the driver's joint states", read_only=True),
+    Parameter("command_topic", "", "", "of the driver's commands", read_only=True),
+    Parameter(
+        "command_type",
+        "",
+        "",
+        f"of them: {JOINT_STATE}, whose efforts are set, or a message with a force",
+        read_only=True,
+    ),
+    Parameter(
+        "joint_names", ("",), "", "the driver's names of the robot's joints, in its order", read_only=True
+    ),
+    Parameter("joint_signs", (1.0,), "", "-1 where the driver's angle grows the other way", read_only=True),
+    Parameter(
+        "joint_offsets",
+        0.0,
+        "rad",
+        "what the driver's angles have more",
+        -10.0,
+        10.0,
+        read_only=True,
+        per_joint=True,
+    ),
+    Parameter(
+        "relative",
+        False,
+        "",
+        "the driver measures each angle from the link before it (elbow: θ3 - θ2)",
+        read_only=True,
+    ),
+    Parameter("use_velocity", False, "", "pass the driver's velocities on", read_only=True),
+    Parameter(
+        "force_axes",
+        "",
+        "",
+        "which of our axes the driver's x, y and z are",
+        read_only=True,
+        check=signed_axes,
+    ),
+    Parameter("max_force", 2.0, "N", "a larger force on the tip is cut to this", 0.0, 100.0),
+    Parameter(
+        "singular_value",
+        0.02,
+        "m/rad",
+        "smallest singular value of the Jacobian at which the force is zero; it is whole from twice that on",
+        1e-6,
+        1.0,
+    ),
+    Parameter("command_timeout", 0.1, "s", "the force is zero once the last command is older", 1e-3, 60.0),
+    Parameter(
+        "state_timeout", 0.1, "s", "the force is zero once the driver's last state is older", 1e-3, 60.0
+    ),
+    Parameter("frame_id", "touch_origin", "", "frame of the tip and of the force", read_only=True),
+)
+
+
+def table_for(driver: str) -> ParameterTable:
+    """The parameters with the defaults of a driver."""
+    defaults = {"driver": driver, **vars(DRIVERS[driver])}
+    return ParameterTable(
+        "touch_adapter", tuple(replace(row, default=defaults.get(row.name, row.default)) for row in ROWS)
+    )
+
+
+TABLE = table_for(DEFAULT)
+
+
+class TouchAdapter(Node):
+    """The driver's topics on one side, `joint_states`, `tip` and `joint_command` on the other."""
+
+    def __init__(self, **node_kwargs: Any) -> None:
+        super().__init__(TABLE.node, **node_kwargs)
+        driver = TABLE.declare_first(self, "driver")
+        self.values = table_for(driver).declare(self)
+        values = self.values
+        self._chain = KinematicChain.load(values.robot)
+        self._convention = convention_of(values, self._chain)
+        self._axes = signed_axes(values.force_axes)
+        self._command, self._set_command = command_of(values, self._chain)
+        self._angles: Array | None = None
+        self._state_time = self._command_time = float("-inf")
+        self._pushing = False  # the driver was told something that it will hold
+        self._share = 1.0
+        self._state = joint_state(self._chain.joint_names)
+        self._tip = PointStamped()
+        self._tip.header.frame_id = values.frame_id
+        self._connect()
+        self.create_timer(LOOK, self._look, clock=Clock(clock_type=ClockType.STEADY_TIME))
+        self.health = HealthReporter(
+            self, values, checks={"driver": self._driver_health, "topics": self._watch.health}
+        )
+
+    def _connect(self) -> None:
+        values = self.values
+        self._watch = Watch(self)
+        self._states = self._watch.publisher(JointState, "joint_states", qos.JOINT_STATES)
+        self._tips = self._watch.publisher(PointStamped, "tip", qos.TIP)
+        self._commands = self._watch.publisher(
+            type(self._command), values.command_topic, DRIVER_COMMAND, command=True
+        )
+        self._watch.subscription(JointState, values.state_topic, self._on_state, DRIVER_STATE)
+        self._watch.subscription(
+            JointState, "joint_command", self._on_command, qos.JOINT_COMMAND_SUBSCRIPTION, command=True
+        )
+
+    def _on_state(self, message: JointState) -> None:
+        try:
+            angles = self._convention.from_driver(joint_values(message, self.values.joint_names))
+            if self.values.use_velocity and message.velocity:
+                rates = joint_values(message, self.values.joint_names, "velocity")
+                fill(self._state, "velocity", self._convention.rates_from_driver(rates))
+        except JointMessageError as reason:
+            self._watch.refuse(self.values.state_topic, reason)
+            return
+        self._angles, self._state_time = angles, time.monotonic()
+        stamp = message.header.stamp
+        if stamp.sec or stamp.nanosec:
+            self._state.header.stamp = stamp
+        else:
+            stamp_now(self._state.header.stamp, self.get_clock())
+        fill(self._state, "position", angles)
+        self._states.publish(self._state)
+        self._tip.header.stamp = self._state.header.stamp
+        self._tip.point = array_to_point(self._chain.forward(angles))
+        self._tips.publish(self._tip)
+
+    def _on_command(self, message: JointState) -> None:
+        try:
+            efforts = joint_values(message, self._chain.joint_names, "effort")
+        except JointMessageError as reason:
+            self._watch.refuse("joint_command", reason)
+            return
+        self._command_time = time.monotonic()
+        if self._state_age() > self.values.state_timeout or self._angles is None:
+            self._release()
+            return
+        self._set_command(self._to_driver(self._angles, efforts))
+        self._publish()
+        self._pushing = True
+
+    def _to_driver(self, angles: Array, efforts: Array) -> Array:
+        """What the driver is told: its efforts, or its force."""
+        if isinstance(self._command, JointState):
+            return self._convention.efforts_to_driver(efforts)
+        force = tip_force(
+            self._chain.jacobian(angles), efforts, self.values.max_force, self.values.singular_value
+        )
+        self._share = force.share
+        return self._axes @ force.vector
+
+    def _look(self) -> None:
+        """Let go where what the force was made from is too old."""
+        stale = time.monotonic() - self._command_time > self.values.command_timeout
+        if self._pushing and (stale or self._state_age() > self.values.state_timeout):
+            what = "joint_command" if stale else self.values.state_topic
+            self.get_logger().warning(f"{what} is too old: the driver is told zero")
+            self._release()
+
+    def _state_age(self) -> float:
+        return time.monotonic() - self._state_time
+
+    def _release(self) -> None:
+        self._set_command(np.zeros(self._chain.dof))
+        self._publish()
+        self._pushing = False
+
+    def _publish(self) -> None:
+        if hasattr(self._command, "header"):
+            stamp_now(self._command.header.stamp, self.get_clock())
+        self._commands.publish(self._command)
+
+    def _driver_health(self) -> Health:
+        figures = {
+            "state_age_s": self._state_age(),
+            "command_age_s": time.monotonic() - self._command_time,
+            "force_share": self._share,
+        }
+        if self._angles is None:
+            return Health(WARN, f"nothing on {self.values.state_topic} yet", figures)
+        if self._state_age() > self.values.state_timeout:
+            return Health(ERROR, f"{self.values.state_topic} is too old: zero force", figures)
+        if self._pushing and self._share < 1.0:
+            return Health(OK, "the force is cut", figures)
+        return Health(OK, "passes on" if self._pushing else "zero force", figures)
+
+    def destroy_node(self) -> None:
+        """Let go of the device, then end."""
+        if self.context.ok():
+            self._release()
+        super().destroy_node()
+
+
+def convention_of(values: ParameterSet, chain: KinematicChain) -> JointConvention:
+    """The driver's joint angles from the parameters. ValueError: they do not fit the chain."""
+    if len(values.joint_names) != chain.dof:
+        raise ValueError(
+            f"parameter 'joint_names' is {list(values.joint_names)}: it may be {chain.dof} names, of "
+            f"{', '.join(chain.joint_names)}"
+        )
+    offsets = values.per_joint("joint_offsets", chain.joint_names)
+    return JointConvention(chain, values.relative, values.joint_signs, offsets)
+
+
+def command_of(values: ParameterSet, chain: KinematicChain) -> tuple[Any, Callable[[Array], None]]:
+    """A message of the driver's type, and what puts a force or efforts (3,) into it. ValueError: it takes neither."""
+    message = message_class(values.command_type)()
+    if isinstance(message, JointState):
+        message.name = list(values.joint_names)
+        return message, lambda efforts: fill(message, "effort", efforts)
+    force = getattr(getattr(message, "wrench", message), "force", None)
+    if force is None or not all(hasattr(force, axis) for axis in "xyz"):
+        raise ValueError(
+            f"parameter 'command_type' is {values.command_type!r}: it may be {JOINT_STATE} or a message with a force"
+        )
+    if chain.dof != 3:
+        raise ValueError(
+            f"{chain.name} has {chain.dof} joints; efforts make a force only where there are three"
+        )
+    if hasattr(message, "header"):
+        message.header.frame_id = values.frame_id
+
+    def set_force(vector: Array) -> None:
+        force.x, force.y, force.z = vector.tolist()
+
+    return message, set_force
+
+
+def main(args: Sequence[str] | None = None) -> int:
+    """Entry point of the executable."""
+    return run(TouchAdapter, args, TABLE)
