@@ -43,6 +43,7 @@ setup(
             "trajectory_publisher = gaik_ros.trajectory_publisher:main",
             "viewer = gaik_ros.viewer.node:main",
             "record = gaik_ros.record:main",
+            "path_markers = gaik_ros.path_markers:main",
             "touch_adapter = gaik_ros.touch_adapter:main",
         ],
         "gaik.commands": [
