@@ -20,6 +20,9 @@ from gaik_ros.qos import TOPICS, Topic
 
 OWN = ("gaik_ros.trajectory_publisher", "gaik_ros.ik_node", "gaik_ros.pid_controller")
 
+BESIDE = ("gaik_ros.path_markers", "gaik_ros.record", "gaik_ros.touch_adapter")
+"""Nodes beside a suite: on the page, but not in the parameter file, where they would pin what depends on the use."""
+
 INTRODUCTION = """\
 # Parameters of the nodes
 
@@ -116,7 +119,8 @@ def main(args: Sequence[str] | None = None) -> int:
     )
     parser.add_argument("modules", nargs="*", help="modules of further nodes")
     options = parser.parse_args(args)
-    tables = [table(module) for module in (*OWN, *options.modules)]
+    beside = () if options.parameter_file else BESIDE
+    tables = [table(module) for module in (*OWN, *options.modules, *beside)]
     sys.stdout.write(parameter_file(tables) if options.parameter_file else page(tables))
     return 0
 
