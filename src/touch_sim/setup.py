@@ -19,6 +19,10 @@ setup(
         ("share/ament_index/resource_index/packages", [f"resource/{package_name}"]),
         (f"share/{package_name}", ["package.xml"]),
         (f"share/{package_name}/launch", files("launch/*.launch.py")),
+        *(
+            (f"share/{package_name}/{tool}", files(f"{tool}/touch.*"))
+            for tool in ("rviz", "plotjuggler", "foxglove")
+        ),
         (f"share/{package_name}/urdf", files(f"{package_name}/urdf/*.urdf")),
         # pip puts console scripts into bin/ only; `ros2 run` looks in lib/<package>/.
         (f"lib/{package_name}", files("scripts/*")),
