@@ -11,6 +11,8 @@ from gaik_core.errors import GaikError, NotFiniteError, ShapeError
 
 Array = NDArray[np.float64]
 
+_FLOAT = np.dtype(np.float64)  # made once: a solve has microseconds
+
 
 def array_of(what: str, value: ArrayLike) -> Array:
     """`value` as a contiguous array of float64; raises ShapeError where it is no array of numbers."""
@@ -30,7 +32,7 @@ def finite(what: str, array: Array) -> Array:
 def copied_vector(what: str, value: ArrayLike, length: int) -> Array:
     """A copy of `value` as an array (length,), contiguous and not yet known to be finite."""
     try:
-        array = np.array(value, dtype=np.float64)
+        array = np.array(value, _FLOAT)
     except (TypeError, ValueError):
         raise GaikError(f"{what} is {value!r}; expected an array of numbers") from None
     if array.shape != (length,):

@@ -77,7 +77,7 @@ def solve(
     angles = copied_vector("start", chain.home if start is None else start, chain.dof)
     stop = _stop(chain, kind, rule, tolerance, orientation_tolerance, orientation_weight, max_iterations)
     problem = (
-        algebra_code(algebra), _packed(chain, limits), kind, wanted, stop, rule.kernel, rule.settings, angles
+        algebra_code(algebra), _packed(chain, limits), kind, wanted, stop, rule.kernel, rule.settings, angles,
     )  # fmt: skip
     if trace:
         return _solve_traced(problem, restarts, posture)
@@ -86,16 +86,18 @@ def solve(
         starts = random_starts(chain, count("restarts", restarts), seed)
         status, iterations, error, turn, used = kernels.solve_with_restarts(*problem, starts)
     else:
-        status, iterations, error, turn = kernels.solve_once(*problem, kernels.IMPROVEMENT, _NO_TRACE, _NO_TRACE)
+        status, iterations, error, turn = kernels.solve_once(
+            *problem, kernels.IMPROVEMENT, _NO_TRACE, _NO_TRACE
+        )
     if status == kernels.NOT_FINITE:
         _raise_not_finite(wanted, angles)
     if posture is not None and status == kernels.CONVERGED:
         preferred = finite_vector("posture", posture, chain.dof)
         more, error, turn = settle(*problem[:5], _MARQUARDT.settings, preferred, angles)
         iterations += more
-    return Solution._make(
-        (angles, error, iterations, status == kernels.CONVERGED, STATUS[status], None, turn, used)
-    )
+    converged = status == kernels.CONVERGED
+    # As Solution(...), without the time it takes to bind eight arguments.
+    return tuple.__new__(Solution, (angles, error, iterations, converged, STATUS[status], None, turn, used))
 
 
 def solve_batch(
@@ -219,7 +221,9 @@ def _solve_traced(problem: kernels.Problem, restarts: int, posture: ArrayLike | 
     _, _, _, target, stop, _, _, angles = problem
     length = stop[-1] + 1
     trace_angles, trace_errors = np.empty((length, len(angles))), np.empty((length, 2))
-    status, iterations, error, turn = kernels.solve_once(*problem, kernels.IMPROVEMENT, trace_angles, trace_errors)
+    status, iterations, error, turn = kernels.solve_once(
+        *problem, kernels.IMPROVEMENT, trace_angles, trace_errors
+    )
     if status == kernels.NOT_FINITE:
         _raise_not_finite(target, angles)
     made = slice(iterations + 1)

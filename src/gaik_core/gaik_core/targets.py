@@ -62,18 +62,19 @@ class Pose:
         )
 
 
+_FRAMES = (Pointing, Pose, Motor)
 Target = ArrayLike | Pointing | Pose | Motor
 
 
 def pack_target(target: Target) -> tuple[int, Array]:
     """The kernels' number of the kind of target, and its numbers; raises ShapeError or NotFiniteError."""
+    if not isinstance(target, _FRAMES):
+        return POSITION, copied_vector("target", target, 3)
     if isinstance(target, Pointing):
         return POINTING, target.packed()
-    if isinstance(target, Pose):
-        return POSE, target.packed()
     if isinstance(target, Motor):
-        return POSE, Pose(target.translation, target.rotation).packed()
-    return POSITION, copied_vector("target", target, 3)
+        target = Pose(target.translation, target.rotation)
+    return POSE, target.packed()
 
 
 def _unit(what: str, value: ArrayLike, length: int) -> Array:

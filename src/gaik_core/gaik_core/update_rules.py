@@ -29,12 +29,8 @@ class UpdateRule:
         window: a solve has stagnated after this many updates without progress.
     """
 
+    kernel: ClassVar[int]
     window: ClassVar[int] = 50
-
-    @property
-    def kernel(self) -> int:
-        """Number of the compiled step in `gaik_core.kernels.rules`."""
-        raise NotImplementedError
 
     @cached_property
     def settings(self) -> Array:
@@ -70,7 +66,7 @@ class GradientDescent(UpdateRule):
             self._positive("learning_rate")
 
     @property
-    def kernel(self) -> int:
+    def kernel(self) -> int:  # type: ignore[override]
         """Fixed or chosen step."""
         return kernels.STEEPEST_DESCENT if self.learning_rate == "auto" else kernels.GRADIENT_DESCENT
 
@@ -84,6 +80,7 @@ class GradientDescent(UpdateRule):
 class Momentum(UpdateRule):
     """Gradient descent that keeps a share `momentum` of its last step (Polyak 1964)."""
 
+    kernel: ClassVar[int] = kernels.MOMENTUM
     learning_rate: float = 0.5
     momentum: float = 0.8
     window: ClassVar[int] = 100
@@ -92,26 +89,19 @@ class Momentum(UpdateRule):
         self._positive("learning_rate")
         self._share("momentum")
 
-    @property
-    def kernel(self) -> int:
-        """Polyak's step."""
-        return kernels.MOMENTUM
-
 
 @dataclass(frozen=True)
 class Nesterov(Momentum):
     """Momentum whose gradient is taken where the momentum leads (Nesterov 1983, as in Sutskever et al. 2013)."""
 
-    @property
-    def kernel(self) -> int:
-        """Nesterov's step."""
-        return kernels.NESTEROV
+    kernel: ClassVar[int] = kernels.NESTEROV
 
 
 @dataclass(frozen=True)
 class RMSProp(UpdateRule):
     """Each joint's step divided by the running size of its gradient (Hinton 2012)."""
 
+    kernel: ClassVar[int] = kernels.RMSPROP
     learning_rate: float = 0.01
     decay: float = 0.9
     epsilon: float = 1e-8
@@ -121,16 +111,12 @@ class RMSProp(UpdateRule):
         self._positive("learning_rate", "epsilon")
         self._share("decay")
 
-    @property
-    def kernel(self) -> int:
-        """Hinton's step."""
-        return kernels.RMSPROP
-
 
 @dataclass(frozen=True)
 class Adam(UpdateRule):
     """Adaptive moments (Kingma and Ba 2015): the rule of the paper's Table 1, with its settings there as defaults."""
 
+    kernel: ClassVar[int] = kernels.ADAM
     learning_rate: float = 0.05
     beta1: float = 0.9
     beta2: float = 0.999
@@ -141,56 +127,41 @@ class Adam(UpdateRule):
         self._positive("learning_rate", "epsilon")
         self._share("beta1", "beta2")
 
-    @property
-    def kernel(self) -> int:
-        """Adam's step."""
-        return kernels.ADAM
-
 
 @dataclass(frozen=True)
 class AMSGrad(Adam):
     """Adam whose second moment never shrinks (Reddi, Kale and Kumar 2018)."""
 
-    @property
-    def kernel(self) -> int:
-        """AMSGrad's step."""
-        return kernels.AMSGRAD
+    kernel: ClassVar[int] = kernels.AMSGRAD
 
 
 @dataclass(frozen=True)
 class DampedLeastSquares(UpdateRule):
     """θ ← θ + Jᵀ (J Jᵀ + λ² I)⁻¹ e with a constant `damping` λ in m (Wampler 1986)."""
 
+    kernel: ClassVar[int] = kernels.DAMPED
     damping: float = 0.05
     window: ClassVar[int] = 30
 
     def __post_init__(self) -> None:
         self._positive("damping")
 
-    @property
-    def kernel(self) -> int:
-        """Wampler's step."""
-        return kernels.DAMPED
-
 
 @dataclass(frozen=True)
 class LevenbergMarquardt(UpdateRule):
     """Damped least squares whose damping fades with the loss: λ² = c ½ |e|² + b tr(J Jᵀ)/r (Sugihara 2011).
 
-    Far from the target it steps like gradient descent, by less than a radian; near it, like Newton's method.
+    Far from the target it steps like gradient descent, by 1/√(2c) rad at most; near it, like Newton's method.
+    `damping` is c: Sugihara's 1, or less; at 1/4 a Panda takes the fewest updates.
     """
 
-    damping: float = 1.0
+    kernel: ClassVar[int] = kernels.LEVENBERG_MARQUARDT
+    damping: float = 0.25
     bias: float = 1e-6
     window: ClassVar[int] = 10
 
     def __post_init__(self) -> None:
         self._positive("damping", "bias")
-
-    @property
-    def kernel(self) -> int:
-        """Sugihara's step."""
-        return kernels.LEVENBERG_MARQUARDT
 
 
 RULES: dict[str, type[UpdateRule]] = {
