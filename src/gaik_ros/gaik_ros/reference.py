@@ -9,6 +9,9 @@ Array = NDArray[np.float64]
 
 
 SHORTEST_STEP = 1e-6  # s: less than this is no time
+JITTER = (
+    0.02  # s: what a moving goal is ahead by no more than this is owed to the times its setpoints come at
+)
 
 
 class JointReference:
@@ -53,7 +56,10 @@ class JointReference:
         self.aim(self.position)
 
     def advance(self, dt: float) -> Array:
-        """The position (dof,) after `dt` s; `velocity` is the goal's where it is reached."""
+        """The position (dof,) after `dt` s.
+
+        `velocity` is the goal's where that is reached, or moves and will be at once; else that of the way there.
+        """
         if not dt >= SHORTEST_STEP:
             return self.position
         away = self.goal - self.position
@@ -63,7 +69,9 @@ class JointReference:
             self.velocity = self._goal_velocity
         else:
             self.position = self.position + share * away
-            self.velocity = share * away / dt
+            ahead = float(((1.0 - share) * np.abs(away) / self.speed_limit).max())
+            following = ahead < JITTER and bool(self._goal_velocity.any())
+            self.velocity = self._goal_velocity if following else share * away / dt
         return self.position
 
     def _slow_down(self, speeds: Array) -> float:

@@ -42,14 +42,25 @@ def test_it_goes_straight_and_arrives_when_the_slowest_joint_does():
 
 def test_on_the_way_the_velocity_is_that_of_the_way_and_at_the_goal_that_of_the_goal():
     reference = JointReference([0.0], 1.0)
-    reference.aim([0.015], velocity=[0.4])
+    reference.aim([0.1])
     reference.advance(0.01)
     assert reference.velocity == pytest.approx([1.0])
+    reference.aim([0.015], velocity=[0.4])
     reference.advance(0.01)
     assert reference.velocity == pytest.approx([0.4])
     reference.rest()
     reference.advance(0.01)
     assert reference.velocity == pytest.approx([0.0])
+
+
+def test_jitter_of_a_moving_goal_does_not_reach_the_velocity():
+    reference, now, speed = JointReference([0.0], 1.0), 0.0, 0.6
+    for k, late in enumerate(np.random.default_rng(1).uniform(0.0, 0.009, 200)):
+        reference.aim([speed * 0.01 * k], velocity=[speed])
+        reference.advance(0.01 * k + late - now)
+        now = 0.01 * k + late
+        assert k == 0 or reference.velocity == pytest.approx([speed])
+        assert abs(reference.position[0] - speed * 0.01 * k) < 0.01
 
 
 def test_stop_stays_where_it_is():
