@@ -13,6 +13,7 @@ import numpy as np
 from diagnostic_msgs.msg import DiagnosticStatus
 from geometry_msgs.msg import Point
 from numpy.typing import NDArray
+from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.node import Node
 from rclpy.serialization import deserialize_message
 from sensor_msgs.msg import JointState
@@ -32,6 +33,7 @@ from gaik_ros.verdict import Verdict, describe, verdict_message
 from gaik_ros.watch import Watch
 
 Array = NDArray[np.float64]
+RMWError = rclpy_implementation.RMWError  # the bytes are no message
 
 TABLE = ParameterTable(
     "ik_node",
@@ -105,7 +107,8 @@ class IkNode(Node):
         settings = settings_of(self.chain, self.values)
         self._follower = SetpointFollower(ik, settings, 1.0 / self.values.rate)
         self._names = list(self.chain.joint_names)
-        self._received = self._solved = self._superseded = 0
+        self._received = self._solved = self._refused = 0
+        self._superseded = self._all_superseded = 0  # since the last verdict, and ever
         self._newest: _Setpoint | None = None  # not answered yet
         self._setpoint: _Setpoint | None = None  # the last answered
         self._told_waiting = 0  # sequence of the last setpoint said to be waiting
@@ -152,6 +155,7 @@ class IkNode(Node):
         self._newest = _Setpoint(position, self._received, time.monotonic())
         if superseded:
             self._superseded += 1
+            self._all_superseded += 1
         elif self.executor is not None:
             # Answered after the messages that are already here, so that a flood does not delay the newest.
             self.executor.create_task(self._answer)
@@ -161,6 +165,7 @@ class IkNode(Node):
             reason = f"{position.tolist()}: a coordinate is beyond {self.values.setpoint_bound:g} m"
         else:
             reason = f"{position.tolist()}: every coordinate must be finite"
+        self._refused += 1
         self._watch.refuse("setpoint", reason)
         self._publish_verdict(Verdict(self._received, position, Result.REFUSED, f"refused, {reason}"))
 
@@ -199,7 +204,7 @@ class IkNode(Node):
             return None
         try:
             return joint_values(deserialize_message(self._raw_state[0], JointState), self._names)
-        except JointMessageError as reason:
+        except (JointMessageError, RMWError) as reason:
             self._watch.refuse("joint_states", reason)
             return None
 
@@ -272,6 +277,8 @@ class IkNode(Node):
         figures = {
             "received": self._received,
             "solved": self._solved,
+            "refused": self._refused,
+            "superseded": self._all_superseded,
             "solve_p50_s": solve.p50,
             "solve_p99_s": solve.p99,
             "setpoint_age_s": now - self._setpoint.time if self._setpoint else math.nan,

@@ -11,6 +11,7 @@ from enum import StrEnum
 import numpy as np
 from numpy.typing import NDArray
 
+from gaik_ros.lateness import Lateness
 from gaik_ros.pid import Gains, Pid
 from gaik_ros.reference import JointReference
 
@@ -41,6 +42,8 @@ class ControlSettings:
     state_timeout: float = 0.1  # s
     on_reference_timeout: str = HOLD
     approach_speed: float = 1.0  # rad/s, of each joint
+    largest_step: float = 0.1  # rad: a reference further than this from the one before is approached
+    tolerated_lateness: float = 0.004  # s: up to this the gains are full
     extrapolation: float = 0.0  # s: for how long a reference goes on at its velocity until the next one
 
 
@@ -52,6 +55,7 @@ class JointControl:
         self._pid = Pid(joints, gains, blend_time)
         self._approach = JointReference(np.zeros(joints), settings.approach_speed)
         self._zero = np.zeros(joints)
+        self.lateness = Lateness(settings.tolerated_lateness)
         self.settings = settings
         self.mode = Mode.WAITING
         self.enabled = True
@@ -60,6 +64,7 @@ class JointControl:
         """Change gains and settings without a jump of the effort. ValueError: gains of other joints."""
         self._pid.set_gains(gains)
         self._approach.set_speed_limit(settings.approach_speed)
+        self.lateness.tolerated = settings.tolerated_lateness
         self.settings = settings
 
     def reset(self) -> None:
@@ -85,12 +90,15 @@ class JointControl:
         reference_velocity: Array | float,
         reference_age: float,
         reference_unchanged: float = 0.0,
+        late: float = 0.0,
     ) -> Array:
         """The effort (joints,) N·m.
 
         `state` and `reference` are (joints,) rad or None if never heard, ages s, `dt` s since the last step.
-        `reference_unchanged` is for how long (s) the reference has been the same position, heard again or not.
+        `reference_unchanged` is for how long (s) the reference has been the same position, heard again or not; `late`
+        by how much (s) this step or its state is later than a period.
         """
+        self.lateness.note(late, dt)
         powerless = self._powerless(state, state_age, reference, reference_age)
         if powerless is not None or state is None:
             return self._let_go(powerless or Mode.WAITING)
@@ -101,7 +109,9 @@ class JointControl:
         else:
             ahead = min(reference_unchanged, self.settings.extrapolation) * reference_velocity
             target, velocity = self._follow(reference + ahead, reference_velocity, dt)
-        return self._pid.step(target - state, dt, velocity)
+        return self._pid.step(
+            target - state, dt, velocity, self.lateness.share, self.lateness.derivative_share
+        )
 
     def _powerless(
         self, state: Array | None, state_age: float, reference: Array | None, reference_age: float
@@ -136,7 +146,7 @@ class JointControl:
         return self._approach.position, 0.0
 
     def _follow(self, reference: Array, velocity: Array | float, dt: float) -> tuple[Array, Array | float]:
-        if self.mode is Mode.FOLLOWING:
+        if self.mode is Mode.FOLLOWING and not self._jumps(reference):
             self._approach.position = reference
             return reference, velocity
         if self.mode is not Mode.APPROACHING:
@@ -148,6 +158,10 @@ class JointControl:
             self.mode = Mode.FOLLOWING
             self._pid.resume()
         return position, self._approach.velocity
+
+    def _jumps(self, reference: Array) -> bool:
+        """Whether a reference is too far from the one before to be followed at once."""
+        return bool(np.abs(reference - self._approach.position).max() > self.settings.largest_step)
 
 
 _POWERLESS = (Mode.WAITING, Mode.RELEASED, Mode.STATE_LOST, Mode.DISABLED)

@@ -100,10 +100,18 @@ class Pid:
         self.output = np.array(self.output if output is None else output, dtype=np.float64)
         self.resume()
 
-    def step(self, error: Array, dt: float, reference_velocity: Array | float = 0.0) -> Array:
+    def step(
+        self,
+        error: Array,
+        dt: float,
+        reference_velocity: Array | float = 0.0,
+        share: float = 1.0,
+        derivative_share: float = 1.0,
+    ) -> Array:
         """The effort (joints,) N·m for `error` (joints,) rad, `dt` s after the last step.
 
-        A `dt` of less than a microsecond changes nothing and gives the last output again.
+        A `dt` of less than a microsecond changes nothing and gives the last output again. The shares, from 0 to 1, are
+        of p and of d: what is left of them while the loop is late.
         """
         if not dt >= SHORTEST_STEP:
             return self.output
@@ -118,7 +126,8 @@ class Pid:
             gained = g.i * error * dt
         self._error = error
         integral = np.minimum(np.maximum(self._integral + gained, g.integral_min), g.integral_max)
-        law = g.p * error + integral + g.d * self._derivative + g.feed_forward * reference_velocity
+        law = share * g.p * error + integral + derivative_share * g.d * self._derivative
+        law = law + g.feed_forward * reference_velocity
         if self._resume_from is not None:
             self._bias = self._resume_from - law
             self._resume_from = None

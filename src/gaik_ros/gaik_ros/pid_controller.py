@@ -99,6 +99,20 @@ TABLE = ParameterTable(
             "approach_speed", 2.0, "rad/s", "limit on the way to a reference after a start or a pause", 0.001
         ),
         Parameter(
+            "largest_reference_step",
+            0.1,
+            "rad",
+            "a reference further than this from the one before is approached, not jumped at",
+            1e-6,
+        ),
+        Parameter(
+            "tolerated_lateness",
+            0.004,
+            "s",
+            "lateness of ticks and states up to which the gains are full; beyond it they fall, the derivative's first",
+            1e-4,
+        ),
+        Parameter(
             "reference_extrapolation",
             0.015,
             "s",
@@ -128,6 +142,8 @@ def settings_of(values: ParameterSet) -> ControlSettings:
         state_timeout=values.state_timeout,
         on_reference_timeout=values.on_reference_timeout,
         approach_speed=values.approach_speed,
+        largest_step=values.largest_reference_step,
+        tolerated_lateness=values.tolerated_lateness,
         extrapolation=values.reference_extrapolation,
     )
 
@@ -155,6 +171,7 @@ class PidController(Node):
         )
         self._state = self._reference = _Heard(None)
         self._state_stamp = (0, 0)
+        self._ticked = time.monotonic()
         self._mode = Mode.WAITING
         self._connect()
         self.loop = DeadlineLoop(self.values.rate, self._tick)
@@ -191,19 +208,21 @@ class PidController(Node):
         self._reference = heard
 
     def _on_state(self, message: JointState) -> None:
-        stamp = (message.header.stamp.sec, message.header.stamp.nanosec)
-        if stamp == self._state_stamp != (0, 0):
-            return  # a driver that repeats its last message has no news of the device
         try:
             position = joint_values(message, self._names)
         except JointMessageError as reason:
             self._watch.refuse("joint_states", reason)
             return
+        stamp, before = (message.header.stamp.sec, message.header.stamp.nanosec), self._state.position
+        if stamp == self._state_stamp != (0, 0) and before is not None and (position == before).all():
+            return  # a driver that repeats its last message has no news of the device
         self._state_stamp = stamp
         self._state = _Heard(position)
 
     def _tick(self, dt: float) -> None:
         state, reference, now = self._state, self._reference, time.monotonic()
+        late = max(now - self._ticked, now - state.time) - self.loop.schedule.period
+        self._ticked = now
         with self._lock:
             effort = self._control.step(
                 dt,
@@ -213,6 +232,7 @@ class PidController(Node):
                 reference.velocity,
                 now - reference.time,
                 now - reference.since,
+                late,
             )
         fill(self._command, "effort", effort)
         stamp_now(self._command.header.stamp, self.get_clock())
@@ -246,18 +266,23 @@ class PidController(Node):
 
     def _control_health(self) -> Health:
         mode, state, reference, now = self._control.mode, self._state, self._reference, time.monotonic()
+        lateness = self._control.lateness
         age = now - reference.time if reference.position is not None else float("nan")
-        level = OK
+        level, message = OK, str(mode)
         if mode is Mode.STATE_LOST:
             level = ERROR
         elif mode in (Mode.WAITING, Mode.RELEASED) or age > self.values.reference_timeout:
             level = WARN
+        if lateness.share < 1.0:
+            level = max(level, WARN)
+            message += f"; {1e3 * lateness.worst:.0f} ms late: gains at {lateness.share:.2f}, no derivative"
         figures = {
             "mode": mode,
             "state_age_s": now - state.time if state.position is not None else float("nan"),
             "reference_age_s": age,
+            "lateness_s": lateness.worst,
         }
-        return Health(level, str(mode), figures)
+        return Health(level, message, figures)
 
     def destroy_node(self) -> None:
         """Let go of the device, then end."""

@@ -16,7 +16,7 @@ class Loop:
         self.control = JointControl(1, gains or Gains(), ControlSettings(**settings))
         self.angle = np.array([angle])
         self.reference, self.velocity, self.reference_age, self.state_age = None, 0.0, 0.0, 0.0
-        self.unchanged = 0.0
+        self.unchanged = self.late = 0.0
         self.efforts, self.angles = [], []
 
     def run(self, seconds):
@@ -29,6 +29,7 @@ class Loop:
                 self.velocity,
                 self.reference_age,
                 self.unchanged,
+                self.late,
             )
             self.efforts.append(effort[0])
             self.angles.append(self.angle[0])
@@ -71,11 +72,40 @@ def test_a_far_first_reference_is_approached_under_the_speed_limit():
     assert loop.angle[0] == pytest.approx(1.0, abs=5e-3)
 
 
-def test_once_there_it_follows_without_a_limit():
-    loop = Loop(angle=0.0, approach_speed=0.5).refer(0.0).run(0.1)
-    loop.refer(0.4).run(0.002)
+def test_once_there_it_follows_steps_at_once_and_approaches_after_a_jump():
+    loop = Loop(angle=0.0, approach_speed=0.5, largest_step=0.1).refer(0.0).run(0.1)
+    loop.refer(0.09).run(0.002)
     assert loop.control.mode is Mode.FOLLOWING
-    np.testing.assert_array_equal(loop.control.held, [0.4])
+    np.testing.assert_array_equal(loop.control.held, [0.09])
+    loop.run(0.3).refer(0.49).run(0.002)
+    assert loop.control.mode is Mode.APPROACHING
+    np.testing.assert_allclose(loop.control.held, [0.09 + 0.002 * 0.5])
+    loop.run(2.0)
+    assert loop.control.mode is Mode.FOLLOWING
+    assert np.abs(np.diff(loop.angles[-2000:])).max() / DT < 0.5 * 1.1
+
+
+def test_rivals_far_apart_do_not_move_the_device_faster_than_its_approach():
+    loop = Loop(angle=0.0, approach_speed=0.5).refer(0.0).run(0.1)
+    for k in range(200):
+        loop.refer(0.5 * (k % 2)).run(0.005)
+    assert np.abs(np.diff(loop.angles)).max() / DT < 0.5 * 1.5
+
+
+def test_a_timely_loop_is_as_if_there_were_no_lateness():
+    plain = Loop(angle=0.0).refer(0.05).run(0.3)
+    timely = Loop(angle=0.0)
+    timely.late = 0.0039
+    timely.refer(0.05).run(0.3)
+    np.testing.assert_array_equal(plain.efforts, timely.efforts)
+
+
+def test_a_late_loop_pulls_less():
+    timely, late = Loop(angle=0.0).refer(0.0).run(0.1), Loop(angle=0.0).refer(0.0).run(0.1)
+    late.late = 0.05
+    for loop in (timely, late):
+        loop.refer(0.09).run(0.005)
+    assert 0.0 < max(late.efforts) < 0.2 * max(timely.efforts)
 
 
 def test_between_references_it_may_go_on_at_their_velocity_for_a_while():
