@@ -41,6 +41,10 @@ setup(
             "demo = touch_sim.demo:main",
             "view = touch_sim.view:main",
         ],
+        "gaik.experiments": [
+            "fig21 = touch_sim.experiments:FIG21",
+            "fig22 = touch_sim.experiments:FIG22",
+        ],
         "gaik.suites": ["twin = touch_sim.suite:twin_nodes"],
     },
 )

@@ -74,12 +74,15 @@ def _draw_path(axes: Axes3D, run: Run) -> None:
     axes.set_title(f"{run.name}: error {1e3 * error.rms_m:.2f} mm RMS, {1e3 * error.max_m:.2f} mm at most")
 
 
-def space_in_mm(axes: Axes3D, middle: Sequence[float], half: float) -> None:
-    """Show a cube about a point (3,), `half` to each side in mm, all axes of one scale, seen as the paper does."""
+def space_in_mm(axes: Axes3D, middle: Sequence[float], half: float, zoom: float = 1.0) -> None:
+    """Show a cube about a point (3,), `half` to each side in mm, all axes of one scale, seen as the paper does.
+
+    A `zoom` below 1 leaves the labels more room.
+    """
     limits = [(centre - half, centre + half) for centre in middle]
     axes.set(xlim=limits[0], ylim=limits[1], zlim=limits[2])
     axes.set(xlabel="x [mm]", ylabel="y [mm]", zlabel="z [mm]")
-    axes.set_box_aspect((1, 1, 1))
+    axes.set_box_aspect((1, 1, 1), zoom=zoom)
     axes.view_init(**VIEW)
     for axis in (axes.xaxis, axes.yaxis, axes.zaxis):
         axis.set_major_locator(MaxNLocator(5))

@@ -49,3 +49,16 @@ class Lines:
 
     def end(self) -> None:
         """Say nothing."""
+
+
+class Silent:
+    """Nothing at all, for a run inside something that has a progress of its own."""
+
+    def begin(self, name: str, setpoints: int) -> None:
+        """Say nothing."""
+
+    def advance(self, setpoints: int) -> None:
+        """Say nothing."""
+
+    def end(self) -> None:
+        """Say nothing."""
