@@ -11,7 +11,7 @@ INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check --co
 DESCRIBED := $(wildcard $(addsuffix /setup.py,$(PACKAGES)) $(addsuffix /setup.cfg,$(PACKAGES)))
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test unit lint reproduce bench clean
+.PHONY: help demo view test unit lint nightly soak reproduce bench docs pictures clean
 
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z]+:.*## / {printf "  make %-10s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
@@ -28,12 +28,29 @@ lint: $(VENV)/ready-to-test ## ruff and mypy alone
 	@$(BIN)/ruff check --quiet . && $(BIN)/ruff format --quiet --check . && echo "ruff: clean"
 	@$(BIN)/mypy
 
+view: $(VENV)/ready ## the suite with a live page on 127.0.0.1: drag the arm, press circle
+	@$(BIN)/python -m touch_sim.view $(ARGS)
+
+nightly: $(VENV)/ready-to-test ## the long tests too: every fault, 100 000 examples of each fuzz test
+	@ROS_PYTHON_CHECK_FIELDS=1 GAIK_NIGHTLY=1 $(BIN)/python -m pytest $(PACKAGES) test $(ARGS)
+
+soak: $(VENV)/ready ## run the suite for MINUTES=20 and report memory and periods over time
+	@$(BIN)/python -m touch_sim.soak --minutes $(MINUTES) $(ARGS)
+
 reproduce: $(VENV)/ready ## every experiment of the paper, into out/paper
 	@$(BIN)/gaik reproduce $(ARGS)
 
 bench: $(VENV)/ready ## the benchmark against other packages, into docs/benchmarks.md
 	@$(INSTALL) --requirement benchmark/requirements.txt || echo "bench: some packages to compare with are missing and will be skipped"
 	@$(BIN)/python benchmark/run.py $(ARGS)
+
+pictures: $(VENV)/ready ## the pictures and tables that the docs show, all but the benchmark's
+	@$(BIN)/python -m touch_sim.pictures
+	@$(BIN)/gaik reproduce --docs docs
+
+docs: $(VENV)/ready ## the documentation as a site, into out/site
+	@$(INSTALL) --requirement requirements-docs.txt
+	@NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --quiet && echo "out/site/index.html"
 
 clean: ## remove what was built and written, .venv too
 	rm -rf $(VENV) out build install log
