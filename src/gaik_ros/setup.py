@@ -45,6 +45,7 @@ setup(
             "record = gaik_ros.record:main",
             "path_markers = gaik_ros.path_markers:main",
             "touch_adapter = gaik_ros.touch_adapter:main",
+            "inject = gaik_ros.faults.inject:main",
         ],
         "gaik.commands": [
             "plot = gaik_ros.cli.plot:COMMAND",

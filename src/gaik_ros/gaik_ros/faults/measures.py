@@ -14,34 +14,40 @@ Array = NDArray[np.float64]
 
 LATE = 1.0  # s a busy machine may add to any time that is promised; the table has what was measured
 ON_COURSE = 0.1  # rad: an arm that follows is a tenth of that behind, one that does not several times as much
+FRESH = 0.3  # s
 STILL = 4e-3  # rad: an arm that is held moves less
 
 
-def lag(recording: Recording, names: list[str]) -> float:
-    """The largest angle between device and reference over a recording, rad; infinite where one is silent."""
+def lags(recording: Recording, names: list[str]) -> Array:
+    """The largest angle between device and reference at each of the device's messages, (n,) rad."""
     state = recording.joints("joint_states", names)
     reference = recording.joints("joint_reference", names)
-    known = np.isfinite(state.values).all(axis=1)
-    if not known.any() or not reference.received.size:
-        return float("inf")
-    held = np.searchsorted(reference.received, state.received[known], side="right") - 1
-    away = np.abs(state.values[known] - reference.values[np.maximum(held, 0)])
-    return float(away[held >= 0].max(initial=0.0))
+    held = np.searchsorted(reference.received, state.received, side="right") - 1
+    usable = (held >= 0) & np.isfinite(state.values).all(axis=1)
+    return np.asarray(np.abs(state.values[usable] - reference.values[held[usable]]).max(axis=1))
 
 
 def on_course(recording: Recording, names: list[str], promise: str = "the arm stays on course") -> Check:
-    """The arm follows its reference all the time."""
-    behind = lag(recording, names)
-    return Check(promise, f"at most {1e3 * behind:.0f} mrad behind", behind < ON_COURSE)
+    """The arm follows its reference; a tenth of the time is left to a machine that stalls."""
+    behind = lags(recording, names)
+    if behind.size < 50:
+        return Check(promise, f"{behind.size} states only", False)
+    usual, most = float(np.percentile(behind, 90.0)), float(behind.max())
+    return Check(
+        promise,
+        f"{1e3 * usual:.0f} mrad behind for 90 % of the time, {1e3 * most:.0f} at most",
+        usual < ON_COURSE,
+    )
 
 
 def back_on_course(stage: Stage, seconds: float = 1.0) -> Check:
     """After what happened the arm follows again: measured over `seconds` from the moment it does."""
-    names = stage.names
 
     def follows() -> bool:
         state, reference = stage.angles(), stage.probe.newest("joint_reference")
-        if state is None or reference is None or stage.probe.age("joint_states") > 0.1:
+        if state is None or reference is None:
+            return False
+        if max(stage.probe.age("joint_states"), stage.probe.age("joint_reference")) > FRESH:
             return False
         return bool(np.abs(np.array(reference.position) - state).max() < ON_COURSE)
 
@@ -49,20 +55,8 @@ def back_on_course(stage: Stage, seconds: float = 1.0) -> Check:
     mark = stage.mark()
     stage.wait(lambda: stage.since(mark).count("joint_states") > 100, "joint_states come again")
     stage.sleep(seconds)
-    behind = float(np.median(_lags(stage.since(mark), names)))
-    return Check(
-        "follows again", f"{taken:.2f} s later, then {1e3 * behind:.0f} mrad behind", behind < ON_COURSE
-    )
-
-
-def _lags(recording: Recording, names: list[str]) -> Array:
-    state = recording.joints("joint_states", names)
-    reference = recording.joints("joint_reference", names)
-    held = np.searchsorted(reference.received, state.received, side="right") - 1
-    usable = (held >= 0) & np.isfinite(state.values).all(axis=1)
-    if not usable.any():
-        return np.array([np.inf])
-    return np.asarray(np.abs(state.values[usable] - reference.values[held[usable]]).max(axis=1))
+    follows_on = on_course(stage.since(mark), stage.names)
+    return Check("follows again", f"{taken:.2f} s later, then {follows_on.measured}", follows_on.holds)
 
 
 def at_rest_since(recording: Recording, topic: str, names: list[str], field: str, still: float) -> float:

@@ -48,26 +48,25 @@ class Rig:
         return ""
 
     def play(self, fault: Fault) -> Outcome:
-        """Play one fault. StageError: it cannot be played here, or the arm does not come to rest before it."""
+        """Play one fault. StageError: it cannot be played here."""
         lack = self.lacks(fault)
         if lack:
             raise StageError(f"{fault.name} cannot be played: {lack}")
         stage = self.stage
         self._connect(Need.CABLE in fault.needs)
         stage.probe.forget()
+        began, mark = time.monotonic(), stage.mark()
+        checks: list[Check] = []
         try:
             stage.settle()
-        except NotSeenError as error:
-            raise StageError(f"{fault.name} cannot be played, not seen before it: {error}") from error
-        began, mark = time.monotonic(), stage.mark()
-        try:
-            checks = list(fault.play(stage))
-        except NotSeenError as missing:
-            checks = [Check(str(missing), "not seen", False)]
+            began, mark = time.monotonic(), stage.mark()
+            checks.extend(fault.play(stage))
+        except (NotSeenError, StageError) as missing:
+            checks.append(Check(str(missing), "not seen", False))
         alive, recovery = nodes_alive(stage), recovers(stage)
         recording = stage.since(mark)
-        always = (efforts_bounded(recording, stage), reference_bounded(recording, stage), alive, recovery)
-        return Outcome(fault, (*checks, *always), time.monotonic() - began)
+        checks += [efforts_bounded(recording, stage), reference_bounded(recording, stage), alive, recovery]
+        return Outcome(fault, tuple(checks), time.monotonic() - began)
 
     def _connect(self, through_cable: bool) -> None:
         """Put the cable in or take it out, where the device is a process of ours."""
