@@ -26,21 +26,12 @@ from std_srvs.srv import Trigger
 from gaik_ros.recorder import Recorder
 from gaik_ros.run import running
 from gaik_ros.tracking import tip_distances
+from touch_sim.demo_progress import Silent
 from touch_sim.demo_run import Results, run_demo
 from touch_sim.suite import Suite, SuiteOptions
 
 OFF = 0.01  # m; a tip that does not follow is several times as far off
 PATIENCE = 60.0  # s for anything that takes a second or two on an idle machine
-
-
-class Silent:
-    """A progress that says nothing."""
-
-    def begin(self, name: str, setpoints: int) -> None: ...
-
-    def advance(self, setpoints: int) -> None: ...
-
-    def end(self) -> None: ...
 
 
 class User:
