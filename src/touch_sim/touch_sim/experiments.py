@@ -226,7 +226,7 @@ def draw_tip(nodes: Runs, without: Runs) -> Figure:
             tip = run.tip.between(run.course.start, run.course.end)
             error = in_lap(run, Series(tip.time, 1e3 * tip_distances(run)))
             panel.plot(error.time, error.values, color=colour, linewidth=1.0, label=name)
-        panel.set(xlabel="time [s]", title=f"{runs[0].name}: distance from the path's point at the same time")
+        panel.set(xlabel="time [s]", title=f"{runs[0].name}: error over the lap")
         panel.set_ylim(bottom=0.0)
         panel.legend()
     panels[0].set_ylabel("error [mm]")
