@@ -20,7 +20,7 @@ from gaik_ros.qos import TOPICS, Topic
 
 OWN = ("gaik_ros.trajectory_publisher", "gaik_ros.ik_node", "gaik_ros.pid_controller")
 
-BESIDE = ("gaik_ros.path_markers", "gaik_ros.record", "gaik_ros.touch_adapter")
+BESIDE = ("gaik_ros.path_markers", "gaik_ros.record", "gaik_ros.touch_adapter", "gaik_ros.viewer.node")
 """Nodes beside a suite: on the page, but not in the parameter file, where they would pin what depends on the use."""
 
 INTRODUCTION = """\

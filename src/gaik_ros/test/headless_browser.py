@@ -12,9 +12,10 @@ import time
 import urllib.request
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from websockets.sync.client import ClientConnection, connect
+if TYPE_CHECKING:
+    from websockets.sync.client import ClientConnection
 
 NAMES = ("chromium", "chromium-browser", "google-chrome")
 MISSING = "no browser; install one with: sudo apt-get install chromium"
@@ -133,6 +134,8 @@ class BrowserPage:
 @contextlib.contextmanager
 def browser_page(width: int = 1280, height: int = 800) -> Iterator[BrowserPage]:
     """Run the browser with an empty profile and one empty page, and end it. RuntimeError: it does not start."""
+    from websockets.sync.client import connect  # comes with viser, without which there is no page
+
     path = browser_path()
     if path is None:
         raise RuntimeError(MISSING)

@@ -12,8 +12,12 @@ import argparse
 import os
 import sys
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 from touch_sim.demo import BAD_OPTION, FAILED, INSTALL
+
+if TYPE_CHECKING:
+    from rclpy.node import Node
 
 INSTALL_VIEW = INSTALL | {"viser": "'viser>=1.1,<2'", "rich": "'viser>=1.1,<2'"}
 
@@ -39,6 +43,8 @@ def main(args: Sequence[str] | None = None) -> int:
             f"{sys.executable} -m pip install {INSTALL_VIEW.get(name, name)}",
             FAILED,
         )
+    except KeyboardInterrupt:  # before there is anything to end
+        return 0
 
 
 def _view(options: argparse.Namespace, ros_arguments: list[str]) -> int:
@@ -46,10 +52,35 @@ def _view(options: argparse.Namespace, ros_arguments: list[str]) -> int:
     import rclpy
     from rclpy.exceptions import NameValidationException
     from rclpy.impl.implementation_singleton import rclpy_implementation
-    from rclpy.parameter import Parameter
     from rclpy.signals import SignalHandlerOptions
+    from rclpy.validate_namespace import validate_namespace
 
-    from gaik_ros.run import spin_together
+    from gaik_ros.run import Runner, StopRequest, stopped_by_signals
+
+    request = StopRequest()
+    with stopped_by_signals(request.make):
+        try:
+            validate_namespace("/" + options.namespace.strip("/"))
+            rclpy.init(args=["view", *ros_arguments], signal_handler_options=SignalHandlerOptions.NO)
+            nodes, address = _nodes(options)
+            print(f"The page is at {address}; Ctrl-C ends it.", flush=True)
+            runner = Runner(nodes)
+            request.serve(runner)
+            try:
+                runner.spin()
+            finally:
+                runner.destroy()
+        except (ValueError, OSError, NameValidationException, rclpy_implementation.RCLError) as reason:
+            return _complain(str(reason), BAD_OPTION)
+        finally:
+            rclpy.try_shutdown()
+    return 0
+
+
+def _nodes(options: argparse.Namespace) -> tuple[list[Node], str]:
+    """The suite's nodes and the viewer, and where the page is. ValueError: an option that a node refuses."""
+    from rclpy.parameter import Parameter
+
     from gaik_ros.viewer.node import Viewer
     from touch_sim.description import ORIGIN_FRAME, touch_urdf
     from touch_sim.suite import Suite, SuiteOptions
@@ -63,27 +94,19 @@ def _view(options: argparse.Namespace, ros_arguments: list[str]) -> int:
         "urdf": touch_urdf() if touch else "",
         "origin_frame": ORIGIN_FRAME if touch else "",
     }
-    try:
-        rclpy.init(args=["view", *ros_arguments], signal_handler_options=SignalHandlerOptions.NO)
-        suite = Suite(
-            SuiteOptions(
-                robot=options.robot,
-                rate=options.rate,
-                feed_forward=options.feed_forward,
-                namespace=options.namespace,
-            )
-        )
-        viewer = Viewer(
+    suite = Suite(
+        SuiteOptions(
+            robot=options.robot,
+            rate=options.rate,
+            feed_forward=options.feed_forward,
             namespace=options.namespace,
-            parameter_overrides=[Parameter(name, value=value) for name, value in parameters.items()],
         )
-        print(f"The page is at {viewer.page.address}; Ctrl-C ends it.", flush=True)
-        spin_together([*suite.nodes, viewer])
-    except (ValueError, OSError, NameValidationException, rclpy_implementation.RCLError) as reason:
-        return _complain(str(reason), BAD_OPTION)
-    finally:
-        rclpy.try_shutdown()
-    return 0
+    )
+    viewer = Viewer(
+        namespace=options.namespace,
+        parameter_overrides=[Parameter(name, value=value) for name, value in parameters.items()],
+    )
+    return [*suite.nodes, viewer], viewer.page.address
 
 
 def _has_screen() -> bool:

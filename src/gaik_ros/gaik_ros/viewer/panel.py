@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from gaik_ros.health import ERROR, OK, WARN
 from gaik_ros.viewer.board import Board, NodeHealth
 from gaik_ros.viewer.controls import GAINS, LAP, SOLVER, Controls, SuiteParameters
-from gaik_ros.viewer.picture import ERROR_WINDOW, Picture
+from gaik_ros.viewer.picture import Picture
 from gaik_ros.viewer.plots import Plot
 from gaik_ros.viewer.scene import BAD, DESIRED, FOLLOWED, GOOD, VOLUME
 from gaik_ros.viewer.suite_client import SuiteError
@@ -27,7 +27,6 @@ MILLI = 1e3
 LEVELS = {OK: GOOD, WARN: BAD, ERROR: (205, 43, 49)}
 SILENT = (168, 176, 186)
 NOTICE = 8.0  # s
-PERIOD_WINDOW = 60.0  # s
 
 
 @dataclass(frozen=True)
@@ -80,7 +79,7 @@ class Panel:
             group = gui.add_button_group(label, buttons)
             group.on_click(lambda event: self._press(event.target.value, event.client))
         self._setpoint = gui.add_vector3(
-            "Setpoint (mm)", (0.0, 0.0, 0.0), step=1.0, hint="right, up and toward the user: x, y, z"
+            "Setpoint (mm)", (0.0, 0.0, 0.0), step=0.5, hint="right, up and toward the user: x, y, z"
         )
 
         @self._setpoint.on_update
@@ -97,17 +96,15 @@ class Panel:
         with panel.add_tab("Live"):
             self._errors = Plot(
                 self._server,
-                f"Distance of the tip (mm), the last {ERROR_WINDOW:g} s",
+                "Distance of the tip (mm) over time (s)",
                 (("to the setpoint", css(DESIRED)), ("to the reference", css(FOLLOWED))),
-                ERROR_WINDOW,
                 MILLI,
                 (0.01, 100.0),
             )
             self._periods = Plot(
                 self._server,
-                f"Period of {self._periods_of.rsplit('/', 1)[-1]} (ms), the last {PERIOD_WINDOW:g} s",
+                f"Period of {self._periods_of.rsplit('/', 1)[-1]} (ms) over time (s)",
                 (("median", css(GOOD)), ("99 %", css(BAD)), ("longest", css(SILENT))),
-                PERIOD_WINDOW,
                 MILLI,
                 (0.1, 100.0),
             )
@@ -139,7 +136,7 @@ class Panel:
         self._verdict.content = verdict_html(picture.verdict)
         self._nodes.content = nodes_html(board.health(now))
         point = picture.setpoint if picture.setpoint is not None else picture.tip
-        self._setpoint.value = tuple(round(MILLI * value, 1) for value in point.tolist())
+        self._setpoint.value = tuple(round(MILLI * value, 1) + 0.0 for value in point.tolist())
 
     def show_parameters(self) -> None:
         """Show the parameters that are in force."""

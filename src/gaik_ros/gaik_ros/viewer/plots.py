@@ -24,24 +24,21 @@ class Plot:
         server: viser.ViserServer,
         title: str,
         series: Sequence[tuple[str, str]],
-        window: float,
         factor: float,
         decades: tuple[float, float],
     ) -> None:
         """`series` are labels and colours; values are shown times `factor`, between the `decades`."""
         self._factor, self._decades = factor, decades
+        self._began: float | None = None
         server.gui.add_html(_heading(title, series))
         lines = tuple(uplot.Series(stroke=colour, width=1.5, points={"show": False}) for _, colour in series)
         axis = uplot.Axis(stroke=AXIS, grid=GRID, ticks=GRID, font=FONT)
         self._plot = server.gui.add_uplot(
-            (np.array([-window, 0.0]), *[np.full(2, np.nan)] * len(series)),
+            (np.array([-1.0, 0.0]), *[np.full(2, decades[0])] * len(series)),
             (uplot.Series(label="s"), *lines),
-            scales={
-                "x": uplot.Scale(time=False, range=(-window, 0.0)),
-                "y": uplot.Scale(distr=3, range=decades),
-            },
+            scales={"x": uplot.Scale(time=False), "y": uplot.Scale(distr=3, range=decades)},
             axes=(
-                uplot.Axis(**axis, scale="x", size=26.0, space=40.0),
+                uplot.Axis(**axis, scale="x", size=26.0),
                 uplot.Axis(**axis, scale="y", size=42.0),
             ),
             legend={"show": False},
@@ -51,10 +48,14 @@ class Plot:
         )
 
     def show(self, chart: StripChart, now: float) -> None:
-        """Show the newest samples."""
+        """Show the newest samples that have a value of every series, over the time in s since the first call."""
+        if self._began is None:
+            self._began = now
         times, *values = chart.columns(now)
-        if times.size >= 2:
-            self._plot.data = (times, *(np.clip(self._factor * column, *self._decades) for column in values))
+        whole = np.isfinite(values).all(axis=0)  # the browser knows no NaN: it would draw a fall to zero
+        if whole.sum() >= 2:
+            shown = (np.clip(self._factor * column[whole], *self._decades) for column in values)
+            self._plot.data = (now - self._began + times[whole], *shown)
 
 
 def _heading(title: str, series: Sequence[tuple[str, str]]) -> str:

@@ -59,7 +59,7 @@ def nearest_point(values: Mapping[str, str]) -> tuple[float, float, float] | Non
 
 
 def _millimetres(*metres: str) -> str:
-    return "(" + ", ".join(f"{1e3 * float(value):.1f}" for value in metres) + ") mm"
+    return "(" + ", ".join(f"{round(1e3 * float(value), 1) + 0.0:.1f}" for value in metres) + ") mm"
 
 
 def _length(metres: float) -> str:

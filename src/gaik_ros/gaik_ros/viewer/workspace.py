@@ -13,10 +13,10 @@ from gaik_core import KinematicChain
 Array = NDArray[np.float64]
 Faces = NDArray[np.int64]
 
-SAMPLES = 400_000  # joint values tried
-CELLS = 36  # along the longest side of the workspace
+SAMPLES = 600_000  # joint values tried
+CELLS = 40  # along the longest side of the workspace
 FREE = math.pi  # rad: how far a joint without a limit is turned to either side
-BLURS = 2
+BLURS = 3
 CORNERS = np.array(list(itertools.product((0, 1), repeat=3)))
 
 
