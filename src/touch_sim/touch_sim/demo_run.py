@@ -97,7 +97,8 @@ class Conductor:
         """`node` is run together with the suite's nodes, in the same namespace."""
         self._suite, self._progress = suite, progress
         self.recorder = Recorder(node)
-        self._meters = {n.get_name(): LoopMeter(n.loop) for n in suite.nodes}
+        loops = {n.get_name(): getattr(n, "loop", None) for n in suite.nodes}
+        self._meters = {name: LoopMeter(loop) for name, loop in loops.items() if loop is not None}
         self._periods: dict[str, list[np.ndarray]] = {name: [] for name in self._meters}
         self._cpu, self._wall = 0.0, 0.0
         self._start = node.create_client(Trigger, "trajectory_publisher/start")
