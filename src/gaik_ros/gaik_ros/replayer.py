@@ -15,13 +15,14 @@ from gaik_core.errors import GaikError
 from gaik_ros import qos
 from gaik_ros.conversions import array_to_point, joint_values
 from gaik_ros.joint_message import JointMessageError
+from gaik_ros.recorded_runs import ARRIVED
 from gaik_ros.recorder import Recorder
 from gaik_ros.recording import Recording
 from gaik_ros.tracking import Series
 
 Array = NDArray[np.float64]
 
-PATIENCE = 10.0  # s for a suite to be there, and for the way to the first setpoint
+PATIENCE = 10.0  # s for a suite to be there, and for the way to the first setpoint, which may be out of reach
 LOOK = 0.05  # s between looks
 AT_REST = 2e-4  # m: a tip that moves less in a while is at rest
 WHILE = 0.3  # s; also how long the last verdicts may take
@@ -48,16 +49,18 @@ class Replayer:
             time.sleep(LOOK)
 
     def go_to(self, point: Array) -> None:
-        """Send one setpoint (3,) m, and wait until the tip is at rest, wherever that is."""
-        end, before, rest, sent = time.monotonic() + PATIENCE, self._tip(), time.monotonic(), 0.0
-        while (now := time.monotonic()) < end and now - rest < WHILE + AGAIN:
+        """Send one setpoint (3,) m until the tip is at rest there, or for as long as that should take."""
+        end, rest, sent, before = time.monotonic() + PATIENCE, time.monotonic(), 0.0, self._tip()
+        while (now := time.monotonic()) < end:
             if now - sent > AGAIN:
                 self._publisher.publish(array_to_point(point))
                 sent = now
             time.sleep(LOOK)
             tip = self._tip()
-            if np.linalg.norm(tip - before) > AT_REST:
+            if np.linalg.norm(tip - before) > AT_REST or np.linalg.norm(tip - point) > ARRIVED:
                 before, rest = tip, time.monotonic()
+            if time.monotonic() - rest > WHILE:
+                return
 
     def feed(self, setpoints: Series, sent: Callable[[], object]) -> Recording:
         """Publish setpoints (n, 3) m at their times, call `sent` after each, and return what was heard meanwhile."""
