@@ -64,8 +64,8 @@ def joints_figure(runs: Sequence[Run]) -> Figure:
 
 
 def _draw_path(axes: Axes3D, run: Run) -> None:
-    tip = in_lap(run, run.tip)
-    desired, followed = 1e3 * run.course.desired(tip.time + run.course.start), 1e3 * tip.values
+    lap = np.linspace(run.course.start, run.course.end, MOST_POINTS)
+    desired, followed = 1e3 * run.course.desired(lap), 1e3 * in_lap(run, run.tip).values
     axes.plot(*desired.T, **DESIRED)
     axes.plot(*followed.T, **FOLLOWED)
     middle, half = (desired.max(axis=0) + desired.min(axis=0)) / 2, 0.55 * np.ptp(desired, axis=0).max()

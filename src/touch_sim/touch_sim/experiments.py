@@ -91,7 +91,7 @@ def largest(run: Run) -> float:
 
 
 def median(run: Run) -> float:
-    """Its median in mm, which a stall does not touch."""
+    """Its median in mm, which single stalls of the machine do not touch."""
     return 1e3 * float(np.median(tip_distances(run)))
 
 
@@ -158,7 +158,7 @@ def run_fig21(period: float = PERIOD) -> Findings:
             compare("RMS error of the tip, real nodes", nodes, rms),
             compare("RMS error, the same loop without ROS", without, rms),
             agreement(nodes, without),
-            compare("median error, real nodes", nodes, median, "a stall of the machine does not touch it"),
+            compare("median error, real nodes", nodes, median, "hardly touched by what else the machine does"),
             compare("median error, without ROS", without, median),
             compare("largest error, real nodes", nodes, largest),
             compare("largest error, without ROS", without, largest),
