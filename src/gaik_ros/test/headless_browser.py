@@ -132,8 +132,11 @@ class BrowserPage:
 
 
 @contextlib.contextmanager
-def browser_page(width: int = 1280, height: int = 800) -> Iterator[BrowserPage]:
-    """Run the browser with an empty profile and one empty page, and end it. RuntimeError: it does not start."""
+def browser_page(width: int, height: int, scale: float = 1.0) -> Iterator[BrowserPage]:
+    """Run the browser with an empty profile and one empty page, and end it. RuntimeError: it does not start.
+
+    `width` and `height` are in the page's own pixels, each of which is `scale` pixels wide that are drawn.
+    """
     from websockets.sync.client import connect  # comes with viser, without which there is no page
 
     path = browser_path()
@@ -155,7 +158,7 @@ def browser_page(width: int = 1280, height: int = 800) -> Iterator[BrowserPage]:
                     "Emulation.setDeviceMetricsOverride",
                     width=width,
                     height=height,
-                    deviceScaleFactor=1,
+                    deviceScaleFactor=scale,
                     mobile=False,
                 )
                 yield page

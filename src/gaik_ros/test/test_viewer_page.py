@@ -75,7 +75,7 @@ def visit():
     trajectory = TrajectoryPublisher(context=context, parameter_overrides=overrides(autostart=False))
     viewer = Viewer(context=context, parameter_overrides=overrides(port=0, rate=15.0))
     try:
-        with running([bench, ik, controller, trajectory, viewer], context), browser_page(1000, 600) as page:
+        with running([bench, ik, controller, trajectory, viewer], context), browser_page(1000, 600, scale=0.4) as page:
             page.open(viewer.page.address)
             wait_until(lambda: viewer.page.visitors == 1, "the browser does not come")
             wait_until(lambda: "pid_controller" in page.text(), "the page shows no nodes")
