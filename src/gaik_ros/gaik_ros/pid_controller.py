@@ -273,8 +273,8 @@ class PidController(Node):
             level = ERROR
         elif mode in (Mode.WAITING, Mode.RELEASED) or age > self.values.reference_timeout:
             level = WARN
-        if lateness.share < 1.0:
-            level = max(level, WARN)
+        if level == OK and lateness.share < 1.0:
+            level = WARN
             message += f"; {1e3 * lateness.worst:.0f} ms late: gains at {lateness.share:.2f}, no derivative"
         figures = {
             "mode": mode,

@@ -31,7 +31,8 @@ class _Parser(argparse.ArgumentParser):
 def _arguments(args: Sequence[str] | None) -> argparse.Namespace:
     parser = _Parser(
         prog="inject",
-        description="Play faults against a running suite and say whether what is promised holds. The arm moves.",
+        description="Play faults against a running suite and say whether what is promised holds. The arm moves: let "
+        "nobody else send setpoints meanwhile.",
         epilog="Exit code: 0 all promises held, 1 one did not, 2 a wrong argument or no suite.",
     )
     parser.add_argument("faults", nargs="*", metavar="FAULT", help="names of faults, as --list has them")

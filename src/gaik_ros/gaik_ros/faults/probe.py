@@ -12,6 +12,7 @@ from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from geometry_msgs.msg import Point
 from numpy.typing import NDArray
 from rclpy.context import Context
+from rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.serialization import deserialize_message
@@ -32,6 +33,10 @@ TOPICS: Mapping[str, type] = {
     "ik_node/status": DiagnosticStatus,
     "/diagnostics": DiagnosticArray,
 }
+# A QoS that does not fit is one of the faults: the nodes shall warn of it, not the injector.
+QUIET_SUBSCRIPTION = SubscriptionEventCallbacks(use_default_callbacks=False)
+QUIET_PUBLISHER = PublisherEventCallbacks(use_default_callbacks=False)
+
 LEAD_RATE = 100.0  # Hz
 
 OWN_FRAME = "fault_injector"
@@ -123,7 +128,14 @@ class Probe(Node):
                 reliability=ReliabilityPolicy.BEST_EFFORT if fast else ReliabilityPolicy.RELIABLE,
                 durability=DurabilityPolicy.VOLATILE,
             )
-            self.create_subscription(message_type, topic, self._keeper(topic), profile, raw=True)
+            self.create_subscription(
+                message_type,
+                topic,
+                self._keeper(topic),
+                profile,
+                raw=True,
+                event_callbacks=QUIET_SUBSCRIPTION,
+            )
 
     def _keeper(self, topic: str) -> Callable[[bytes], None]:
         heard = self._heard[topic]

@@ -14,11 +14,13 @@ from gaik_ros.faults.measures import back_on_course, let_go, longest_gap, report
 from gaik_ros.faults.probe import Recording
 from gaik_ros.faults.stage import Stage
 from gaik_ros.health import ERROR, WARN
+from gaik_ros.joint_control import Mode
 
 STALL = 0.2  # s
-WATCHED = 1.5  # s after a node's end: long enough for a report on /diagnostics
+WATCHED = 1.0  # s after a node's end
 
 DEVICE, CONTROLLER, IK, TRAJECTORY = "touch_sim", "pid_controller", "ik_node", "trajectory_publisher"
+CONTROL = "pid_controller: control"
 NEEDS = frozenset({Need.PROCESSES})
 PROMISES = {
     DEVICE: "The controller gives zero effort after the state timeout and says ERROR",
@@ -62,18 +64,14 @@ def _end(node: str, number: signal.Signals, verb: str) -> Fault:
             mark, ended = stage.mark(), time.monotonic()
             code, errors = processes.end(node, number)
             stage.sleep(WATCHED)
-            recording = stage.since(mark)
+            checks = _consequence(stage, node, mark, ended)
+            mark = stage.mark()
             processes.start(node)
-            back = back_on_course(stage)
+            stage.wait(lambda: stage.since(mark).count("setpoint") > 20, "setpoints come")
+            checks.append(back_on_course(stage))
             kept = others.items() <= processes.identities.items()
-        checks = [_consequence(stage, node, recording, ended), back]
         checks.append(Check("no other is restarted", "none was" if kept else "a process is another", kept))
-        if quietly:
-            said = errors.strip().splitlines()[-1:] if "Traceback" in errors else []
-            checks.insert(
-                0, Check("ends with 0", f"exit code {code}{' '.join(['', *said])}", code == 0 and not said)
-            )
-        return checks
+        return [_quiet_end(code, errors), *checks] if quietly else checks
 
     return Fault(
         f"{verb}_{node}",
@@ -102,17 +100,21 @@ def _leading(stage: Stage, node: str) -> Iterator[None]:
         stage.own_processes.end(TRAJECTORY, signal.SIGINT)
 
 
-def _consequence(stage: Stage, node: str, recording: Recording, ended: float) -> Check:
+def _quiet_end(code: int, errors: str) -> Check:
+    said = errors.strip().splitlines()[-1:] if "Traceback" in errors else []
+    return Check("ends with 0", f"exit code {code}{' '.join(['', *said])}", code == 0 and not said)
+
+
+def _consequence(stage: Stage, node: str, mark: dict[str, int], ended: float) -> list[Check]:
     """What the end of `node` at the time `ended` must lead to."""
-    facts, names = stage.facts, stage.names
+    facts, names, recording = stage.facts, stage.names, stage.since(mark)
     if node == DEVICE:
         silent = let_go(recording, names, ended, facts.state_timeout)
-        loud = reported(recording, "pid_controller: control", ERROR)
-        return _both(silent, loud)
+        return [silent, reported(stage, mark, CONTROL, ERROR, Mode.STATE_LOST)]
     if node == CONTROLLER:
-        return stopped(recording, names, ended, stage.command_timeout())
+        return [stopped(recording, names, ended, stage.command_timeout())]
     held = stopped(recording, names, ended, facts.reference_timeout + _way_left(recording, stage))
-    return _both(held, reported(recording, "pid_controller: control", WARN)) if node == IK else held
+    return [held, reported(stage, mark, CONTROL, WARN, Mode.HOLDING)] if node == IK else [held]
 
 
 def _way_left(recording: Recording, stage: Stage) -> float:
@@ -122,14 +124,6 @@ def _way_left(recording: Recording, stage: Stage) -> float:
     if not len(reference) or not len(states):
         return 0.0
     return float((np.abs(reference[-1] - states[0]) / stage.facts.speed_limit).max())
-
-
-def _both(first: Check, second: Check) -> Check:
-    return Check(
-        f"{first.promise}; {second.promise}",
-        f"{first.measured}; {second.measured}",
-        first.holds and second.holds,
-    )
 
 
 NODES = (DEVICE, CONTROLLER, IK, TRAJECTORY)

@@ -15,14 +15,17 @@ from gaik_ros.faults.invariants import ALIVE, EFFORT, RECOVERY, SPEED
 INTRODUCTION = """\
 # Faults
 
-What may go wrong around the nodes, what is promised for it, and what was measured when it was played against the suite
-with the twin. `ros2 run gaik_ros inject --list` lists the faults, `ros2 run gaik_ros inject NAME` plays one against a running
-suite, of any device in any namespace. Made by `ros2 run gaik_ros inject --all --start-suite --write docs/faults.md`.
+What may go wrong around the nodes, what is promised for it, and what was measured when it was played against the
+suite with the twin. `ros2 run gaik_ros inject --list` lists the faults; `ros2 run gaik_ros inject NAME` plays one
+against a running suite, of any device in any namespace. Made by
+`ros2 run gaik_ros inject --all --start-suite --write docs/faults.md`.
 
 In every case, besides what the table promises: every `joint_command` is finite and within the limits of the effort
-("effort"); every `joint_reference` is finite, inside the joint limits and never faster than the speed limit ("reference");
-all nodes live, and the arm goes where the next good setpoint sends it ("recovery"). Nothing was restarted but what was
-killed. Times are bounded by what is promised and a second more, for a busy machine; what was measured stands here.
+("effort"); every `joint_reference` is finite, inside the joint limits and never faster than the speed limit
+("reference"); all nodes live, and the arm goes where the next good setpoint sends it ("recovery"). Nothing is
+restarted but what was ended. Times are bounded by what is promised and a second more, for a busy machine; what was
+measured stands here. On a machine that is late the gains fall (ADR 5), so the arm may be further behind than on an
+idle one.
 """
 
 

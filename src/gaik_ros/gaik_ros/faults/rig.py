@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import signal
 import time
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
@@ -17,7 +18,7 @@ from gaik_ros.faults.invariants import efforts_bounded, nodes_alive, recovers, r
 from gaik_ros.faults.probe import Probe
 from gaik_ros.faults.remote import Remote
 from gaik_ros.faults.stage import NotSeenError, Stage
-from gaik_ros.faults.suite_processes import SuiteProcesses
+from gaik_ros.faults.suite_processes import SUITE, SuiteProcesses
 from gaik_ros.run import running
 
 DEVICE = "touch_sim"
@@ -53,6 +54,7 @@ class Rig:
         if lack:
             raise StageError(f"{fault.name} cannot be played: {lack}")
         stage = self.stage
+        self._revive()
         self._connect(Need.CABLE in fault.needs)
         stage.probe.forget()
         began, mark = time.monotonic(), stage.mark()
@@ -68,16 +70,27 @@ class Rig:
         checks += [efforts_bounded(recording, stage), reference_bounded(recording, stage), alive, recovery]
         return Outcome(fault, tuple(checks), time.monotonic() - began)
 
+    def _revive(self) -> None:
+        """Start the nodes again that a fault before this one has left dead."""
+        processes = self.stage.processes
+        if processes is not None:
+            for name in set(SUITE) - set(processes.identities):
+                processes.start(name, *self._remaps(name))
+
+    def _remaps(self, name: str) -> list[str]:
+        through_cable = name == DEVICE and self.stage.cable is not None
+        return ["-r", f"joint_states:={DEVICE_TOPIC}"] if through_cable else []
+
     def _connect(self, through_cable: bool) -> None:
         """Put the cable in or take it out, where the device is a process of ours."""
         stage = self.stage
         if stage.processes is None or self._lasting_cable or through_cable == (stage.cable is not None):
             return
-        stage.processes.end(DEVICE, 15)
+        stage.processes.end(DEVICE, signal.SIGTERM)
         if stage.cable is not None:
             stage.cable.remove()
         stage.cable = Cable(stage.probe) if through_cable else None
-        stage.processes.start(DEVICE, *(["-r", f"joint_states:={DEVICE_TOPIC}"] if through_cable else []))
+        stage.processes.start(DEVICE, *self._remaps(DEVICE))
 
 
 @contextmanager

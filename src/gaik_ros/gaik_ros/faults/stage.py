@@ -17,7 +17,7 @@ from gaik_ros.conversions import array_to_point, joint_values
 from gaik_ros.faults.cable import Cable
 from gaik_ros.faults.facts import Facts
 from gaik_ros.faults.fault import StageError
-from gaik_ros.faults.probe import Probe, Recording
+from gaik_ros.faults.probe import QUIET_PUBLISHER, Probe, Recording
 from gaik_ros.faults.remote import PATIENCE, Remote, wait_until
 from gaik_ros.faults.suite_processes import SuiteProcesses
 
@@ -42,7 +42,9 @@ class Stage:
         self.names = list(facts.chain.joint_names)
         self.cable: Cable | None = None
         self.processes: SuiteProcesses | None = None
-        self._setpoints = probe.create_publisher(Point, "setpoint", qos.SETPOINT)
+        self._setpoints = probe.create_publisher(
+            Point, "setpoint", qos.SETPOINT, event_callbacks=QUIET_PUBLISHER
+        )
         self._time = 0.0
 
     # What it can take hold of

@@ -6,7 +6,6 @@ import time
 from array import array
 from collections.abc import Callable
 
-from rclpy.serialization import deserialize_message
 from sensor_msgs.msg import JointState
 
 from gaik_ros.faults.cable import Alteration
@@ -14,8 +13,9 @@ from gaik_ros.faults.fault import Check, Fault, Need
 from gaik_ros.faults.measures import back_on_course, let_go, on_course, reported
 from gaik_ros.faults.stage import Stage
 from gaik_ros.health import ERROR
+from gaik_ros.joint_control import Mode
 
-DURATION = 1.5  # s: long enough for a report on /diagnostics
+DURATION = 1.0  # s
 HOUR = 3600
 
 AS_SILENCE = (
@@ -33,12 +33,10 @@ def _lost(name: str, does: str, make: Callable[[], Alteration]) -> Fault:
             mark = stage.mark()
             with stage.own_cable.altered_by(make()):
                 stage.sleep(DURATION)
+                loud = reported(stage, mark, "pid_controller: control", ERROR, Mode.STATE_LOST)
                 recording = stage.since(mark)
-            return [
-                let_go(recording, stage.names, stage.own_cable.cut_at, stage.facts.state_timeout),
-                reported(recording, "pid_controller: control", ERROR),
-                back_on_course(stage),
-            ]
+            silent = let_go(recording, stage.names, stage.own_cable.cut_at, stage.facts.state_timeout)
+            return [silent, loud, back_on_course(stage)]
 
     return Fault(name, does, AS_SILENCE, play, frozenset({Need.CABLE}))
 
@@ -63,14 +61,11 @@ def _harmless(name: str, does: str, alteration: Alteration, promises: str = AS_G
 
 def _freeze(stage: Stage) -> list[Check]:
     """Positions stand still under fresh stamps, as with an encoder that is stuck."""
-    raw = stage.own_cable.newest
-    assert_known = deserialize_message(raw, JointState) if raw is not None else None
-    if assert_known is None:
-        return [Check("joint_states come", "none", False)]
-    position = assert_known.position
+    first: list[array[float]] = []
 
     def frozen(message: JointState) -> JointState:
-        message.position = position
+        first.append(message.position)
+        message.position = first[0]
         return message
 
     with stage.moving():
@@ -82,11 +77,11 @@ def _freeze(stage: Stage) -> list[Check]:
 
 
 def _repeat() -> Alteration:
-    kept: list[JointState] = []
+    first: list[JointState] = []
 
     def repeat(message: JointState) -> JointState:
-        kept.append(message)
-        return kept[0]
+        first.append(message)
+        return first[0]
 
     return repeat
 

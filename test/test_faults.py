@@ -1,0 +1,105 @@
+"""Every fault of the injector, played against a suite of processes: what is promised must hold.
+
+GAIK_NIGHTLY=1 adds those that take a minute and more. Times are bounded generously; what the promises are about is
+counted in messages.
+"""
+
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from spin_all_nodes import suites
+
+from gaik_core import KinematicChain
+from gaik_ros.faults.catalogue import FAULTS, fault_by_name
+from gaik_ros.faults.facts import admissible, posture
+from gaik_ros.faults.report import lines
+from gaik_ros.faults.rig import rig
+from touch_sim.suite import SuiteOptions
+
+NIGHTLY = os.environ.get("GAIK_NIGHTLY") == "1"
+PAGE = Path(__file__).parents[1] / "docs" / "faults.md"
+PATIENCE = 240.0  # s
+
+
+def parameter(fault):
+    skipped = pytest.mark.skipif(
+        fault.long and not NIGHTLY, reason="takes over a minute: GAIK_NIGHTLY=1 plays it"
+    )
+    return pytest.param(fault, id=fault.name, marks=skipped)
+
+
+@pytest.fixture(scope="module")
+def ours():
+    with rig("faults", start_suite=True) as ready:
+        yield ready
+
+
+@pytest.mark.parametrize("fault", [parameter(fault) for fault in FAULTS])
+def test_what_is_promised_holds(ours, fault):
+    outcome = ours.play(fault)
+    assert outcome.holds, lines(outcome)
+
+
+def test_a_broken_promise_is_noticed():
+    deaf = {"pid_controller": ["-p", "state_timeout:=60.0", "-p", "gains.u_clamp_max:=0.5"]}
+    with rig("broken", start_suite=True, arguments=deaf) as broken:
+        outcome = broken.play(fault_by_name("states_stop"))
+    assert not outcome.holds
+    assert any("zero effort" in check.promise for check in outcome.broken), lines(outcome)
+
+
+def inject(*arguments):
+    command = [sys.executable, "-m", "gaik_ros.faults.inject", *arguments]
+    return subprocess.run(command, capture_output=True, text=True, timeout=PATIENCE, check=False)
+
+
+def test_the_list_names_every_fault():
+    done = inject("--list")
+    assert done.returncode == 0
+    assert {line.split()[0] for line in done.stdout.splitlines()} == {fault.name for fault in FAULTS}
+
+
+@pytest.mark.parametrize(
+    ("arguments", "complaint"),
+    [
+        (["nan_setpiont"], "nan_setpiont"),
+        (["--fast"], "--fast"),
+        (["--all", "nan_setpoint"], "not both"),
+        (
+            ["nan_setpoint", "--namespace", "nobody"],
+            "no service /nobody/ik_node/get_parameters.*--start-suite",
+        ),
+    ],
+)
+def test_a_wrong_argument_is_one_line_and_exit_code_2(arguments, complaint):
+    done = inject(*arguments)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr.count("\n") == 1
+    assert re.search(complaint, done.stderr)
+
+
+def test_against_a_running_suite_it_plays_what_can_be_played():
+    with suites(SuiteOptions(namespace="left", rate=200.0)):
+        played = inject("nan_setpoint", "bad_parameters", "--namespace", "left")
+        impossible = inject("kill_ik_node", "--namespace", "left")
+    assert played.returncode == 0, played.stdout + played.stderr
+    assert "2 of 2 held" in played.stdout
+    assert impossible.returncode == 2
+    assert "--start-suite" in impossible.stderr
+
+
+def test_the_page_has_every_fault_and_none_was_broken():
+    rows = [line.split("|") for line in PAGE.read_text().splitlines() if line.startswith("| `")]
+    assert {row[1].strip(" `") for row in rows} == {fault.name for fault in FAULTS}
+    assert {row[-2].strip() for row in rows} == {"yes"}
+
+
+@pytest.mark.parametrize("robot", KinematicChain.names())
+def test_the_postures_of_every_robot_are_inside_its_limits(robot):
+    chain = KinematicChain.load(robot)
+    for turn in (0.0, 0.4, 0.75):
+        assert admissible(chain, posture(chain, turn))
