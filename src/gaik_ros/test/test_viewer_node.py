@@ -4,6 +4,7 @@ import re
 import signal
 import subprocess
 import sys
+import time
 import urllib.request
 from pathlib import Path
 
@@ -72,6 +73,35 @@ def test_one_that_only_looks_has_no_publisher_of_setpoints(context, bench):
         wait_until(lambda: np.allclose(viewer._picture.angles, bench.angles), "no state is heard")
         names = {info.node_name for info in bench.get_publishers_info_by_topic("/setpoint")}
         assert names == {"bench"}
+
+
+def test_it_publishes_setpoints_only_while_they_are_sent(context, bench):
+    viewer = viewer_in(context)
+
+    def publishers():
+        return {info.node_name for info in bench.get_publishers_info_by_topic("/setpoint")}
+
+    with running([bench, viewer], context):
+        viewer._outbox.send(np.array([0.01, 0.02, 0.03]))  # as a drag does
+        wait_until(lambda: bench.setpoints, "the setpoint does not arrive, though nobody was waited for")
+        assert (bench.setpoints[0].x, bench.setpoints[0].y, bench.setpoints[0].z) == (0.01, 0.02, 0.03)
+        assert publishers() == {"bench", "viewer"}
+        wait_until(lambda: publishers() == {"bench"}, "it stays a rival after the drag")
+        viewer._outbox.repeat()
+        wait_until(lambda: len(bench.setpoints) == 2, "the next does not arrive")
+
+
+def test_a_setpoint_that_nobody_hears_is_forgotten(context):
+    viewer = viewer_in(context)
+    with running([viewer], context):
+        viewer._outbox.send(np.zeros(3))
+        wait_until(lambda: viewer._outbox._waiting is None, "it is kept for whoever may come")
+        late = Bench(context)
+        with running([late], context):
+            wait_until(lambda: late.count_subscribers("/setpoint") == 2, "they do not meet")
+            viewer._outbox.attend()
+            time.sleep(0.5)
+            assert late.setpoints == []
 
 
 def test_the_suite_does_not_notice_it_leave(context, bench):

@@ -167,7 +167,7 @@ class Viewer(Node):
 
     def _connect(self) -> None:
         self._watch = Watch(self)
-        self._outbox = Outbox(self._watch, own_subscriptions=1)
+        self._outbox = Outbox(self, self._watch, own_subscriptions=1)
         for message, topic, callback, depth, raw in (
             (Point, "setpoint", self._on_setpoint, 100, False),
             (JointState, "joint_reference", self._on_reference, 1, False),
@@ -238,7 +238,7 @@ class Viewer(Node):
             if angles is not None:
                 self._picture.hear_state(angles, state[1])
         self._picture.sample(now)
-        self._outbox.flush()
+        self._outbox.attend()
         self.page.step(self._picture, self._board, now)
 
     def _hear_reference(self, message: JointState) -> None:
