@@ -158,7 +158,9 @@ def run_fig21(period: float = PERIOD) -> Findings:
             compare("RMS error of the tip, real nodes", nodes, rms),
             compare("RMS error, the same loop without ROS", without, rms),
             agreement(nodes, without),
-            compare("median error, real nodes", nodes, median, "hardly touched by what else the machine does"),
+            compare(
+                "median error, real nodes", nodes, median, "hardly touched by what else the machine does"
+            ),
             compare("median error, without ROS", without, median),
             compare("largest error, real nodes", nodes, largest),
             compare("largest error, without ROS", without, largest),
