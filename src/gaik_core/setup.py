@@ -26,9 +26,11 @@ setup(
     entry_points={
         "console_scripts": ["gaik = gaik_core.cli.main:main"],
         "gaik.commands": [
+            "bench = gaik_core.cli.bench:COMMAND",
             "reproduce = gaik_core.cli.reproduce:COMMAND",
             "robots = gaik_core.cli.robots:COMMAND",
             "solve = gaik_core.cli.solve:COMMAND",
+            "workspace = gaik_core.cli.workspace:COMMAND",
         ],
     },
 )

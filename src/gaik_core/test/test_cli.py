@@ -61,7 +61,7 @@ def on_a_terminal(arguments, environment=()):
 # --- all of it -------------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("command", ["reproduce", "robots", "solve"])
+@pytest.mark.parametrize("command", ["reproduce", "robots", "solve", "workspace"])
 def test_help_has_examples_that_work_as_typed(command, capsys, tmp_path, monkeypatch):
     with pytest.raises(SystemExit) as leaving:
         main([command, "--help"])
@@ -80,7 +80,7 @@ def test_all_commands_are_listed(capsys):
     with pytest.raises(SystemExit):
         main(["--help"])
     text = capsys.readouterr().out
-    for command in ("reproduce", "robots", "solve"):
+    for command in ("bench", "reproduce", "robots", "solve", "workspace"):
         assert re.search(rf"^    {command} +\w", text, re.M)
 
 

@@ -37,6 +37,10 @@ DRIVER_STATE = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)  #
 DRIVER_COMMAND = QoSProfile(depth=1, reliability=ReliabilityPolicy.RELIABLE)  # fits any driver's request
 
 
+def _check_axes(text: str) -> None:
+    signed_axes(text)
+
+
 ROWS = (
     Parameter(
         "driver",
@@ -86,7 +90,7 @@ ROWS = (
         "",
         "which of our axes the driver's x, y and z are",
         read_only=True,
-        check=signed_axes,
+        check=_check_axes,
     ),
     Parameter("max_force", 2.0, "N", "a larger force on the tip is cut to this", 0.0, 100.0),
     Parameter(
