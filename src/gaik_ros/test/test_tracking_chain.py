@@ -49,7 +49,7 @@ def tracking_error(path, feed_forward, extrapolation, jitter):
 @pytest.mark.parametrize("jitter", [0.0, 0.006])
 @pytest.mark.parametrize(("path", "bare"), [(Circle(), 0.98e-3), (Lemniscate(), 1.28e-3)])
 def test_it_tracks_as_a_plain_simulation_says(path, bare, jitter):
-    """`bare` is the plain simulation's for a staircase of references: PAPER_NOTES, "what to expect of tracking"."""
+    """`bare` is what a plain simulation, independent of this project, gives for a staircase of references."""
     speed = 0.08  # m/s, about the greatest on both paths
     delay = speed * jitter / 2.0
     assert tracking_error(path, 0.0, 0.0, jitter) == pytest.approx(bare, abs=speed * DT + delay)
