@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections import deque
 from collections.abc import Sequence
 from typing import Any
@@ -137,3 +138,7 @@ class PathMarkers(Node):
 def main(args: Sequence[str] | None = None) -> int:
     """Entry point of the executable."""
     return run(PathMarkers, args, TABLE)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

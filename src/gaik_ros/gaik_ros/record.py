@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import sys
 import time
 from collections import deque
 from collections.abc import Callable, Sequence
@@ -180,3 +181,7 @@ def _common(offers: Sequence[QoSProfile]) -> tuple[ReliabilityPolicy, Durability
 def main(args: Sequence[str] | None = None) -> int:
     """Entry point of the executable."""
     return run(Record, args, TABLE)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -6,6 +6,7 @@ made from is too old, and when it ends.
 
 from __future__ import annotations
 
+import sys
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import replace
@@ -283,3 +284,7 @@ def command_of(values: ParameterSet, chain: KinematicChain) -> tuple[Any, Callab
 def main(args: Sequence[str] | None = None) -> int:
     """Entry point of the executable."""
     return run(TouchAdapter, args, TABLE)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
