@@ -11,17 +11,19 @@ import viser
 from numpy.typing import NDArray
 
 from gaik_core import KinematicChain
+from gaik_core.workspace import Workspace, find_workspace
 from gaik_ros.viewer.arm_drawing import draw_arm, up_of, z_turned_to
 from gaik_ros.viewer.picture import Picture
+from gaik_ros.viewer.surface import surface_of
 from gaik_ros.viewer.trail import Trail
 from gaik_ros.viewer.urdf_shapes import UrdfShapes
-from gaik_ros.viewer.workspace import reachable_points, surface_around
 
 Array = NDArray[np.float64]
 
 DESIRED, FOLLOWED = (31, 119, 180), (255, 127, 14)
 GOOD, BAD = (34, 160, 84), (224, 122, 16)
 VOLUME = (120, 160, 220)
+CELLS, SAMPLES = 40, 50_000  # enough to look at, in a fraction of a second
 MOVED = 1e-5  # m: a setpoint that moved less is not drawn anew
 
 Grab = Callable[[], None]
@@ -44,10 +46,10 @@ class Scene:
         up = up if shapes is None else up_of(shapes, origin_frame)
         self.arm = draw_arm(server, chain, shapes, origin_frame)
         server.scene.set_up_direction(up)
-        points = reachable_points(chain)
-        self._size = float(np.linalg.norm(points.max(axis=0) - points.min(axis=0)))
-        self._draw_workspace(points)
-        self._draw_surroundings(self.arm.floor(points, up), up)
+        workspace = find_workspace(chain, CELLS, SAMPLES)
+        self._size = float(np.linalg.norm(workspace.upper - workspace.lower))
+        self._draw_workspace(workspace)
+        self._draw_surroundings(self.arm.floor(workspace.tips, up), up)
         self._lines = {
             name: server.scene.add_line_segments(
                 f"/{name}", np.zeros((0, 2, 3)), colour, thickness=thickness, thickness_units="screen"
@@ -59,7 +61,7 @@ class Scene:
         self._miss = server.scene.add_line_segments(
             "/miss", np.zeros((0, 2, 3)), BAD, thickness=1.5, thickness_units="screen"
         )
-        self._look(points, up)
+        self._look(0.5 * (workspace.lower + workspace.upper), up)
 
     def on_drag(self, grab: Grab, drag: Drag) -> None:
         """Call `drag` with each position (3,) m of the ball while it is held, and `grab` after the first."""
@@ -88,8 +90,8 @@ class Scene:
         if self._volume is not None:
             self._volume.visible = shown
 
-    def _draw_workspace(self, points: Array) -> None:
-        vertices, faces = surface_around(points)
+    def _draw_workspace(self, workspace: Workspace) -> None:
+        vertices, faces = surface_of(workspace)
         self._volume: Any = None
         if len(faces):
             self._volume = self._server.scene.add_mesh_simple(
@@ -124,11 +126,10 @@ class Scene:
         for name, direction in zip("xyz", np.eye(3), strict=True):
             scene.add_label(f"/axes/{name}", name, position=1.2 * length * direction, anchor="center-center")
 
-    def _look(self, points: Array, up: Array) -> None:
+    def _look(self, centre: Array, up: Array) -> None:
         """The view that the page opens with: the frame's x to the right, from its left and a little above."""
         right = np.eye(3)[0 if abs(up[0]) < 0.9 else 1]
         toward = np.cross(right, up)
-        centre = 0.5 * (points.min(axis=0) + points.max(axis=0))
         camera = self._server.initial_camera
         camera.position = centre + self._size * (-0.46 * right + 0.26 * up + 0.74 * toward)
         camera.look_at = centre

@@ -1,58 +1,31 @@
-"""The reachable workspace as a closed surface: the tip's positions counted in cells, and the surface around them."""
+"""The reachable workspace as a smooth closed surface around the cells that are reached."""
 
 from __future__ import annotations
 
 import itertools
-import math
 
 import numpy as np
 from numpy.typing import NDArray
 
-from gaik_core import KinematicChain
+from gaik_core.workspace import Workspace
 
 Array = NDArray[np.float64]
 Faces = NDArray[np.int64]
 
-SAMPLES = 600_000  # joint values tried
-CELLS = 40  # along the longest side of the workspace
-FREE = math.pi  # rad: how far a joint without a limit is turned to either side
-BLURS = 3
+BLURS = 2
 CORNERS = np.array(list(itertools.product((0, 1), repeat=3)))
 
 
-def reachable_points(chain: KinematicChain, samples: int = SAMPLES) -> Array:
-    """Positions of the tip (n, 3) m over all joint values inside the limits, evenly spread, the same each time."""
-    lower = np.where(np.isfinite(chain.lower), chain.lower, chain.home - FREE)
-    upper = np.where(np.isfinite(chain.upper), chain.upper, chain.home + FREE)
-    values = lower + (upper - lower) * _even(samples, chain.dof)
-    axes = chain.axis_angles(values)
-    inside = ((axes >= chain.axis_lower) & (axes <= chain.axis_upper)).all(axis=-1)
-    return chain.forward(values[inside])
-
-
-def _even(count: int, dimensions: int) -> Array:
-    """Points (count, dimensions) in the unit cube without clusters: the recurrence of the generalised golden ratio."""
-    ratio = 2.0
-    for _ in range(50):
-        ratio = (1.0 + ratio) ** (1.0 / (dimensions + 1))
-    steps = ratio ** -np.arange(1.0, dimensions + 1.0)
-    return np.asarray(np.arange(1, count + 1)[:, np.newaxis] * steps % 1.0)
-
-
-def surface_around(points: Array, cells: int = CELLS) -> tuple[Array, Faces]:
-    """Vertices (v, 3) m and triangles (f, 3) of a smooth closed surface around points (n, 3); empty for a flat set."""
-    lowest, highest = points.min(axis=0), points.max(axis=0)
-    size = float((highest - lowest).max()) / cells
-    if size == 0.0 or float((highest - lowest).min()) < size:
+def surface_of(workspace: Workspace) -> tuple[Array, Faces]:
+    """Vertices (v, 3) m and triangles (f, 3) around a workspace; none where it has no volume."""
+    if workspace.dimension < 3 or min(workspace.reached.shape) < 2:
         return np.empty((0, 3)), np.empty((0, 3), dtype=np.int64)
     margin = BLURS + 1
-    indices = np.floor((points - lowest) / size).astype(int) + margin
-    field = np.zeros(indices.max(axis=0) + margin + 1)
-    field[tuple(indices.T)] = 1.0
+    field = np.pad(workspace.reached.astype(np.float64), margin)
     for _ in range(BLURS):
         field = _blurred(field)
     vertices, faces = surface_net(field, 0.5)
-    return lowest + (vertices - margin + 0.5) * size, faces
+    return workspace.corner + (vertices - margin + 0.5) * workspace.cell, faces
 
 
 def _blurred(field: Array) -> Array:
