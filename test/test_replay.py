@@ -5,6 +5,7 @@ import subprocess
 import sys
 
 import matplotlib.image
+import numpy as np
 import pytest
 
 PATIENCE = 240  # s; a fresh machine compiles first
@@ -86,3 +87,44 @@ def test_a_suite_that_is_not_there_is_one_line_and_exit_code_2(recorded):
     assert done.returncode == 2
     assert done.stderr.count("\n") == 1
     assert "no suite" in done.stderr and "/nowhere/setpoint" in done.stderr
+
+
+def test_the_frames_in_the_bag_lead_to_the_tip(recorded):
+    """What Foxglove moves the arm by: from the paper's frame over base_link and the joints to the tip."""
+    from rosbags.rosbag2 import Reader
+    from scipy.spatial.transform import Rotation
+
+    from gaik_ros.bag_writer import typestore
+
+    store = typestore()
+    with Reader(recorded / "run") as reader:
+        heard = {"/tf": [], "/tip": [], "/robot_description": []}
+        for connection, _, data in reader.messages():
+            if connection.topic in heard:
+                heard[connection.topic].append(store.deserialize_cdr(data, connection.msgtype))
+    assert "<robot" in heard["/robot_description"][0].data
+    assert len(heard["/tf"]) > 200
+    tips = {(m.header.stamp.sec, m.header.stamp.nanosec): m for m in heard["/tip"]}
+    compared = 0
+    for message in heard["/tf"]:
+        frames = {t.child_frame_id: t for t in message.transforms}
+        stamp = message.transforms[0].header.stamp
+        if (tip := tips.get((stamp.sec, stamp.nanosec))) is None:
+            continue
+
+        def in_base(link, frames=frames):
+            position, turn = np.zeros(3), Rotation.identity()
+            while link != "base_link":
+                t = frames[link].transform
+                step = Rotation.from_quat([t.rotation.x, t.rotation.y, t.rotation.z, t.rotation.w])
+                position = step.apply(position) + np.array(
+                    [t.translation.x, t.translation.y, t.translation.z]
+                )
+                turn, link = step * turn, frames[link].header.frame_id
+            return position, turn
+
+        (origin, turn), (place, _) = in_base("touch_origin"), in_base("tip")
+        expected = [tip.point.x, tip.point.y, tip.point.z]
+        np.testing.assert_allclose(turn.inv().apply(place - origin), expected, atol=1e-9)
+        compared += 1
+    assert compared > 100

@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 import shutil
-import struct
-from collections.abc import Sequence
 from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Final
 
 from gaik_core.errors import GaikError
-from gaik_ros.recording import Raw, Recording
 
 if TYPE_CHECKING:
     from rosbags.typesys.store import Typestore
@@ -61,13 +58,13 @@ class BagWriter:
             self._writer.open()
         except OSError as reason:
             raise BagError(f"the bag {folder} cannot be made: {reason.strerror or reason}") from None
-        self._types = typestore()
+        self.types = typestore()
         self._connections: dict[str, Any] = {}
         self.counts: dict[str, int] = {}
 
     def knows(self, type_name: str) -> bool:
         """Whether messages of this type can be written."""
-        return type_name in self._types.types
+        return type_name in self.types.types
 
     def write(self, topic: str, type_name: str, nanoseconds: int, data: bytes) -> None:
         """Add a message as it is on the wire, `nanoseconds` after 1970. BagError: its type is not known."""
@@ -75,16 +72,15 @@ class BagWriter:
         if connection is None:
             if not self.knows(type_name):
                 raise BagError(f"{topic} has the type {type_name}, whose definition is not known here")
-            connection = self._writer.add_connection(topic, type_name, typestore=self._types)
+            connection = self._writer.add_connection(topic, type_name, typestore=self.types)
             self._connections[topic], self.counts[topic] = connection, 0
         self._writer.write(connection, nanoseconds, data)
         self.counts[topic] += 1
 
-    def write_text(self, topic: str, nanoseconds: int, text: str) -> None:
-        """Add a std_msgs/String."""
-        name = "std_msgs/msg/String"
-        message = self._types.types[name](data=text)
-        self.write(topic, name, nanoseconds, bytes(self._types.serialize_cdr(message, name)))
+    def write_made(self, topic: str, nanoseconds: int, message: Any) -> None:
+        """Add a message made of rosbags' types, as `types` has them."""
+        name = message.__msgtype__
+        self.write(topic, name, nanoseconds, bytes(self.types.serialize_cdr(message, name)))
 
     @property
     def file(self) -> Path:
@@ -106,38 +102,3 @@ class BagWriter:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         self.close()
-
-
-def write_recordings(
-    folder: Path,
-    recordings: Sequence[Recording],
-    namespace: str,
-    description: str = "",
-    replace: bool = False,
-) -> Path:
-    """Write a suite's recordings, one after the other, as one bag; return its file.
-
-    A `description`, the robot's URDF, becomes the first message, where tools that show the robot look for it.
-    """
-    space = f"/{namespace.strip('/')}".rstrip("/")
-    with BagWriter(folder, replace) as writer:
-        if description:
-            first = min(
-                time_of(raw) for recording in recordings for kept in recording.raw.values() for raw in kept
-            )
-            writer.write_text(f"{space}/robot_description", first, description)
-        for recording in recordings:
-            for topic, kept in recording.raw.items():
-                for raw in kept:
-                    writer.write(f"{space}/{topic}", recording.types[topic], time_of(raw), raw[1])
-    return writer.file
-
-
-def time_of(raw: Raw) -> int:
-    """When a message was received, in ns; its stamp where that was not noted, as for those that have one."""
-    nanoseconds, data = raw
-    if nanoseconds:
-        return nanoseconds
-    little_endian = data[1] == 1  # of the four bytes before the message
-    seconds, rest = struct.unpack_from("<iI" if little_endian else ">iI", data, 4)
-    return int(seconds * 1_000_000_000 + rest)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from gaik_ros.bag_writer import write_recordings
+from gaik_ros.recorded_bag import write_recordings
 from gaik_ros.tracking_figures import draw_joints, draw_paths
 from touch_sim.demo_report import table, write_json
 from touch_sim.demo_run import Results
