@@ -85,13 +85,13 @@ def test_a_signal_ends_the_program_quietly(context, number):
     script = Path(__file__).parents[1] / "scripts" / "path_markers"
     watcher = Node("watcher", context=context)
     process = subprocess.Popen(
-        [sys.executable, str(script)],
+        [sys.executable, str(script), "--ros-args", "-r", f"__node:=stopped_by_{number.name}"],
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
     )
     try:
-        wait_until(lambda: "path_markers" in watcher.get_node_names(), "it did not come up")
+        wait_until(lambda: f"stopped_by_{number.name}" in watcher.get_node_names(), "it did not come up")
         process.send_signal(number)
         assert (*process.communicate(timeout=60), process.returncode) == ("", "", 0)
     finally:

@@ -240,13 +240,21 @@ def test_a_signal_ends_the_program_quietly(context, number):
     script = Path(__file__).parents[1] / "scripts" / "touch_adapter"
     watcher = Node("watcher", context=context)
     process = subprocess.Popen(
-        [sys.executable, str(script), "--ros-args", "-p", "driver:=own"],
+        [
+            sys.executable,
+            str(script),
+            "--ros-args",
+            "-p",
+            "driver:=own",
+            "-r",
+            f"__node:=stopped_by_{number.name}",
+        ],
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
     )
     try:
-        wait_until(lambda: "touch_adapter" in watcher.get_node_names(), "it did not come up")
+        wait_until(lambda: f"stopped_by_{number.name}" in watcher.get_node_names(), "it did not come up")
         process.send_signal(number)
         assert (*process.communicate(timeout=60), process.returncode) == ("", "", 0)
     finally:
