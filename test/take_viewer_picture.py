@@ -33,9 +33,17 @@ def take(page: BrowserPage, address: str, file: Path) -> None:
     page.click_on("Lemniscate")
     time.sleep(FOLLOW)
     page.evaluate(CLOSE_NOTICES)
-    wait_until(page, lambda text: "runs at" not in text and "percentile" not in text)
     file.parent.mkdir(parents=True, exist_ok=True)
-    page.screenshot(file)
+    while True:
+        wait_until(page, content)
+        page.screenshot(file)
+        if content(page.text()):  # still
+            return
+
+
+def content(text: str) -> bool:
+    """Whether no node complains."""
+    return "Hz" in text and "runs at" not in text and "percentile" not in text
 
 
 def wait_until(page: BrowserPage, shown) -> None:

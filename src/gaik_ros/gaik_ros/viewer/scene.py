@@ -23,7 +23,7 @@ Array = NDArray[np.float64]
 DESIRED, FOLLOWED = (31, 119, 180), (255, 127, 14)
 GOOD, BAD = (34, 160, 84), (224, 122, 16)
 VOLUME = (120, 160, 220)
-CELLS, SAMPLES = 40, 50_000  # enough to look at, in a fraction of a second
+CELLS, SAMPLES = 56, 100_000  # enough to look at, in a fraction of a second
 MOVED = 1e-5  # m: a setpoint that moved less is not drawn anew
 
 Grab = Callable[[], None]

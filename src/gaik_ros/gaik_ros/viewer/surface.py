@@ -12,7 +12,7 @@ from gaik_core.workspace import Workspace
 Array = NDArray[np.float64]
 Faces = NDArray[np.int64]
 
-BLURS = 2
+BLURS = 3
 CORNERS = np.array(list(itertools.product((0, 1), repeat=3)))
 
 
