@@ -28,6 +28,8 @@ TRIES = 4  # solves for one centre, each from another neighbour
 CHUNK = 8192  # solves between two looks at whether to carry on
 CLOSE = 1e-3  # cells: a centre is reached within this
 UPDATES = 60  # of one solve: from a neighbour it is near, or not to be had
+RESTARTS = 20  # of a centre that most of its neighbours surround
+SURROUNDED = 4 / 3  # neighbours for each direction: four of six in space, three of four in a plane
 FLAT = 1e-9  # of the longest side: less is none
 PROBES = 64  # poses at which the dimension is looked for
 
@@ -177,9 +179,22 @@ class _Search:
                 if not carry_on(done, len(cells) - begin - len(cells[part])):
                     return False
             cells, starts = self._neighbours(np.concatenate(fresh))
+        self._fill_gaps()
         return True
 
-    def _solve(self, cells: Cells, starts: Array) -> Cells:
+    def _fill_gaps(self) -> None:
+        """Try the cells that most of their neighbours surround once more, from starts of all kinds.
+
+        A joint limit can hold every neighbour's solution off a centre that another posture reaches.
+        """
+        missed = np.argwhere((self._tries > 0) & ~self.reached)
+        padded = np.pad(self.reached, 1)
+        around = sum(padded[tuple((missed + side + 1).T)].astype(int) for side in SIDES)
+        missed = missed[around >= SURROUNDED * np.count_nonzero(np.array(self.reached.shape) > 1)]
+        if len(missed):
+            self._solve(missed, np.repeat(self._chain.home[None], len(missed), axis=0), restarts=RESTARTS)
+
+    def _solve(self, cells: Cells, starts: Array, restarts: int = 0) -> Cells:
         """Try centres from joint values; return the cells that are reached."""
         solved = solve_batch(
             self._chain,
@@ -188,6 +203,7 @@ class _Search:
             rule=LevenbergMarquardt(),
             tolerance=CLOSE * self._cell,
             max_iterations=UPDATES,
+            restarts=restarts,
         )
         fresh = cells[solved.converged]
         self._tries[tuple(cells.T)] += 1

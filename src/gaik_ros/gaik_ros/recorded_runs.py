@@ -17,6 +17,7 @@ Array = NDArray[np.float64]
 GAP = 0.5  # s: setpoints further apart belong to different runs
 WINDOW = 20  # setpoints: among so many in a row one was received in time
 ARRIVED = 5e-3  # m: so near the setpoints the way to them is over
+STAYS = 0.2  # s for which it is so near then
 
 
 @dataclass(frozen=True)
@@ -113,5 +114,12 @@ def _course(setpoints: Series, tip: Series, gap: float) -> SetpointCourse:
     end = float(tip.time[-1]) if held and tip.time.size else float(setpoints.time[-1])
     whole = SetpointCourse(setpoints, start, end, gap)
     during = tip.between(start, end)
-    near = np.flatnonzero(np.linalg.norm(during.values - whole.desired(during.time), axis=1) < ARRIVED)
-    return SetpointCourse(setpoints, float(during.time[near[0]]) if near.size else start, end, gap)
+    near = np.linalg.norm(during.values - whole.desired(during.time), axis=1) < ARRIVED
+    return SetpointCourse(setpoints, _arrival(during.time, near, start), end, gap)
+
+
+def _arrival(times: Array, near: NDArray[np.bool_], otherwise: float) -> float:
+    """The time from which the tip is near for a while on end, and does not only cross the path on its way to it."""
+    away = np.concatenate([[0], np.cumsum(~near)])
+    stays = away[np.searchsorted(times, times + STAYS)] == away[:-1]
+    return float(times[np.argmax(stays)]) if stays.any() else otherwise

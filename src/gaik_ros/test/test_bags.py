@@ -190,6 +190,22 @@ def test_a_single_setpoint_is_held_to_the_end(tmp_path):
     assert tracking_error(run).max_m < 5e-3  # it counts from where the tip has arrived
 
 
+def test_a_tip_that_only_crosses_the_path_has_not_arrived(tmp_path):
+    folder = tmp_path / "run"
+    with BagWriter(folder) as writer:
+        for time in np.arange(0.0, 2.0, 0.01):
+            put(writer, "/setpoint", START + time, point(path(time)))
+        times = np.arange(0.0, 2.0, 0.005)
+        # It is there for 50 ms at 0.3 s, and for good from 1 s on.
+        away = np.where((np.abs(times - 0.3) < 0.025) | (times > 1.0), 0.0, 0.03)
+        aims = path(times) + np.outer(away, [0.0, 0.0, 1.0])
+        for time, angles in zip(times, arms(aims), strict=True):
+            put(writer, "/joint_states", START + time, joints(START + time, angles))
+    (run,) = runs_of(read_bag(folder), CHAIN)
+    assert run.course.start == pytest.approx(START + 1.0, abs=0.01)
+    assert tracking_error(run).max_m < 1e-4
+
+
 def test_due_times_take_lateness_away_and_find_what_was_lost():
     random = np.random.default_rng(1)
     due = START + 0.01 * np.arange(600)
