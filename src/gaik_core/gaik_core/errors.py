@@ -7,7 +7,10 @@ from difflib import get_close_matches
 
 
 class GaikError(ValueError):
-    """What all errors of gaik_core have in common."""
+    """What all errors of gaik_core have in common: one line, whatever a file or an array puts into it."""
+
+    def __str__(self) -> str:
+        return " ".join(super().__str__().split())
 
 
 class RobotFileError(GaikError):

@@ -92,6 +92,10 @@ class ContinuousIk:
         flipped = direct.converged and bool(np.abs(direct.angles - polished.angles).max() > SAME)
         return self._answer(target, polished, flipped)
 
+    def onto_limits(self, angles: Array) -> Array:
+        """Angles (dof,) rad moved onto the limits that they break."""
+        return solve(self.chain, self.chain.forward(angles), angles, max_iterations=0).angles
+
     def _solve(self, target: Array, start: Array) -> Solution:
         solution = solve(self.chain, target, start, **self._options)
         self._iterations += solution.iterations

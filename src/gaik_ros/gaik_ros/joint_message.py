@@ -13,6 +13,8 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
+ABSURD = 1e12  # rad, rad/s or N·m: what is beyond it is no measurement, and would overflow in the law
+
 
 class JointMessageError(ValueError):
     """A JointState does not hold what is wanted of it; the message says what is wrong."""
@@ -22,7 +24,7 @@ def joint_values(message: JointState, names: Sequence[str], field: str = "positi
     """The values of `field` (position, velocity or effort) for `names`, in their order: (len(names),).
 
     Joints that are not asked for are passed over. Raises JointMessageError where a name is missing or stands
-    twice, where the field has another length than the names, and where a value is not finite.
+    twice, where the field has another length than the names, and where a value is not finite or is absurd.
     """
     held = getattr(message, field)
     if len(held) != len(message.name):
@@ -30,9 +32,11 @@ def joint_values(message: JointState, names: Sequence[str], field: str = "positi
     values = np.array(held, dtype=np.float64)
     if message.name != list(names):
         values = values[_indices(message.name, names)]
-    if not np.isfinite(values).all():
-        bad = names[int(np.flatnonzero(~np.isfinite(values))[0])]
-        raise JointMessageError(f"{field} of {bad} is not finite")
+    sound = np.abs(values) <= ABSURD  # false for NaN too
+    if not sound.all():
+        bad = int(np.flatnonzero(~sound)[0])
+        reason = f"{values[bad]:g}, beyond {ABSURD:g}" if np.isfinite(values[bad]) else "not finite"
+        raise JointMessageError(f"{field} of {names[bad]} is {reason}")
     return values
 
 

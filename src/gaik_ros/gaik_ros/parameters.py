@@ -107,7 +107,7 @@ class Parameter:
                 value, "it may be a number" + (f" {self.range_text}" if self.range_text else "")
             )
         if isinstance(self.default, int):
-            if float(value) != math.floor(value):
+            if not math.isfinite(value) or value != math.floor(value):
                 raise self._error(value, "it may be a whole number")
             return int(value)
         return float(value)

@@ -49,7 +49,8 @@ class SetpointFollower:
         self._ik, self._settings = ik, settings
 
     def start(self, position: Array, now: float) -> None:
-        """Begin, or begin anew, where the device is: at `position` (dof,) rad."""
+        """Begin, or begin anew, where the device is: at `position` (dof,) rad, or on the limits it is beyond."""
+        position = self._ik.onto_limits(position)
         self._angles, self._advanced, self.started = position, now, True
         self.reference = JointReference(position, self._settings.speed_limit)
 
