@@ -18,7 +18,8 @@ from gaik_ros.run import running
 from gaik_ros.trajectory_publisher import TrajectoryPublisher
 
 pytest.importorskip("viser", reason="no viser; install it with: pip install 'viser>=1.1,<2'")
-pytestmark = pytest.mark.skipif(browser_path() is None, reason=MISSING)
+if browser_path() is None:
+    pytest.skip(MISSING, allow_module_level=True)
 
 CHAIN = KinematicChain.load("touch_device")
 X = np.array([1.0, 0.0, 0.0])
@@ -75,7 +76,10 @@ def visit():
     trajectory = TrajectoryPublisher(context=context, parameter_overrides=overrides(autostart=False))
     viewer = Viewer(context=context, parameter_overrides=overrides(port=0, rate=15.0))
     try:
-        with running([bench, ik, controller, trajectory, viewer], context), browser_page(1000, 600, scale=0.4) as page:
+        with (
+            running([bench, ik, controller, trajectory, viewer], context),
+            browser_page(1000, 600, scale=0.4) as page,
+        ):
             page.open(viewer.page.address)
             wait_until(lambda: viewer.page.visitors == 1, "the browser does not come")
             wait_until(lambda: "pid_controller" in page.text(), "the page shows no nodes")
