@@ -132,8 +132,8 @@ def test_a_cable_is_pulled_for_two_seconds_and_put_back(tmp_path):
         pulled = time.monotonic()
         device.pull()
         time.sleep(PULLED)
-        device.plug()
         back = time.monotonic()
+        device.plug()
         time.sleep(8.0)
         states, desk_heard = (
             finish(at_device, tmp_path / "device.npz"),
