@@ -1,51 +1,46 @@
-"""The soak: memory that rises is noticed, memory that fills once is not held against the suite, and it runs."""
+"""The soak: what it calls flat, and a short run of it."""
 
-import os
 import subprocess
 import sys
 
 import numpy as np
 import pytest
 
-from touch_sim.soak import FLAT, Sample, slope
+from touch_sim.soak import FLAT, growth
 
 
-def samples(memory):
-    return [Sample(0.5 * i, float(mb), 1000.0, 1.0, 2.0) for i, mb in enumerate(memory)]
+def test_memory_that_stands_still_or_wavers_is_flat():
+    wavering = 200.0 + np.random.default_rng(1).normal(0.0, 0.3, 40)
+    assert abs(growth(wavering)) < FLAT
+    assert growth([200.0] * 40) == 0.0
 
 
-def test_a_leak_is_noticed_and_measured():
-    assert slope(samples(200 + 0.25 * np.arange(40))) == pytest.approx(5.0)  # a quarter each half minute
+def test_what_grows_at_the_start_only_is_flat():
+    assert growth([150.0] * 8 + [200.0] * 32) == 0.0
 
 
-def test_what_fills_once_is_flat():
-    filled = 200 + 30 * (1 - np.exp(-np.arange(40) / 2.0)) + 0.01 * np.sin(np.arange(40))
-    assert abs(slope(samples(filled))) < FLAT
+@pytest.mark.parametrize("leak", [0.1, 1.0])
+def test_a_leak_is_seen(leak):
+    assert growth(200.0 + leak * np.arange(40)) > FLAT
 
 
-def test_it_runs_and_writes_its_samples(tmp_path):
-    command = [
-        sys.executable,
-        "-m",
-        "touch_sim.soak",
-        "--minutes",
-        "0.1",
-        "--every",
-        "2",
-        "--out",
-        str(tmp_path),
-    ]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=300)
-    assert "MB in ten minutes" in done.stdout, done.stderr
-    rows = (tmp_path / "soak.csv").read_text().splitlines()
-    assert rows[0].startswith("minutes,memory_mb") and len(rows) >= 3
+def test_a_short_soak_reports_memory_and_periods():
+    command = [sys.executable, "-m", "touch_sim.soak", "--minutes", "0.1"]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=240, check=False)
+    assert done.returncode in (0, 1), done.stderr  # so short a run may still be warming up
+    lines = done.stdout.splitlines()
+    assert lines[-1].startswith("memory ")
+    assert len(lines) >= 5
+    assert all("MiB" in line and "p99" in line for line in lines[:-1])
 
 
-def test_a_wrong_option_is_one_line_and_exit_code_2():
+def test_a_wrong_time_is_one_line():
     done = subprocess.run(
         [sys.executable, "-m", "touch_sim.soak", "--minutes", "-1"],
         capture_output=True,
         text=True,
-        env=os.environ,
+        timeout=60,
+        check=False,
     )
-    assert done.returncode == 2 and "--minutes is -1" in done.stderr and "Traceback" not in done.stderr
+    assert done.returncode == 2
+    assert done.stderr.count("\n") == 1
