@@ -11,7 +11,7 @@ INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check --co
 DESCRIBED := $(wildcard $(addsuffix /setup.py,$(PACKAGES)) $(addsuffix /setup.cfg,$(PACKAGES)))
 
 .DEFAULT_GOAL := help
-.PHONY: help demo view test unit lint nightly soak reproduce bench docs pictures clean
+.PHONY: help demo view test unit faults lint nightly soak reproduce bench docs pictures clean
 
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z]+:.*## / {printf "  make %-10s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
@@ -22,7 +22,10 @@ demo: $(VENV)/ready ## watch the twin follow a circle and a lemniscate; options 
 test: unit lint ## run all tests, then ruff and mypy; options of pytest by ARGS="-k solver"
 
 unit: $(VENV)/ready-to-test
-	@ROS_PYTHON_CHECK_FIELDS=1 $(BIN)/python -m pytest $(PACKAGES) test $(ARGS)
+	@ROS_PYTHON_CHECK_FIELDS=1 $(BIN)/python -m pytest $(PACKAGES) test --ignore test/test_faults.py $(ARGS)
+
+faults: $(VENV)/ready-to-test ## every fault, played against the suite: ten minutes on a machine that is otherwise idle
+	@ROS_PYTHON_CHECK_FIELDS=1 $(BIN)/python -m pytest test/test_faults.py $(ARGS)
 
 lint: $(VENV)/ready-to-test ## ruff and mypy alone
 	@$(BIN)/ruff check --quiet . && $(BIN)/ruff format --quiet --check . && echo "ruff: clean"
