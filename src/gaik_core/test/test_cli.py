@@ -231,7 +231,8 @@ def test_names_are_completed_in_the_shell(tmp_path):
         answer = tmp_path / "answer"
         environment = {
             **os.environ,
-            "PYTHONPATH": str(tmp_path),
+            # In front, not instead: an installed tree may be found by PYTHONPATH alone.
+            "PYTHONPATH": os.pathsep.join(filter(None, [str(tmp_path), os.environ.get("PYTHONPATH")])),
             "_ARGCOMPLETE": "1",
             "_ARGCOMPLETE_STDOUT_FILENAME": str(answer),
             "COMP_LINE": typed,

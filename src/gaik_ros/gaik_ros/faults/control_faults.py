@@ -11,12 +11,14 @@ import numpy as np
 from std_srvs.srv import SetBool, Trigger
 
 from gaik_ros.faults.fault import Check, Fault, Need
-from gaik_ros.faults.measures import LATE, back_on_course, largest_step, on_course
+from gaik_ros.faults.measures import LATE, follows, largest_step
 from gaik_ros.faults.stage import Stage
 
-OVERSHOOT = 0.03  # rad; an integral wound up for 60 s overshoots by 0.1
+WOUND_UP = 0.03  # rad; an integral that was wound up holds the arm 0.1 off, and more, for seconds
 SMALL_STEP = 0.5  # N·m between two commands; an effort that jumps does so by its limit of 1
-EVEN_IF_LATE = {"tolerated_lateness": 100.0}  # s: full gains, however busy the machine is
+# A busy machine shall not be what is measured: no loss of state or reference, and full gains, however late it is.
+PATIENT = {"state_timeout": 10.0, "reference_timeout": 10.0}  # s
+EVEN_IF_LATE = {"tolerated_lateness": 100.0}  # s
 FIRST = 5  # commands after taking hold of the device: on a machine in time, the first 5 ms
 HELD = 1e-6  # rad/(N·m): the gain of a device that a hand holds fast
 
@@ -36,11 +38,14 @@ def _saturation(seconds: float, integral_gain: float | None) -> Any:
     """A hand holds the device for `seconds` while it is sent far away, then lets go."""
 
     def play(stage: Stage) -> list[Check]:
-        gains = EVEN_IF_LATE | ({} if integral_gain is None else {"gains.i": integral_gain})
+        gains = PATIENT | ({} if integral_gain is None else {"gains.i": integral_gain})
         limit = stage.facts.effort_max
         target = stage.point(stage.facts.far)
         with _changed(stage, "pid_controller", gains):
-            with _changed(stage, "touch_sim", {"gain": HELD}):
+            with (
+                _changed(stage, "pid_controller", EVEN_IF_LATE),
+                _changed(stage, "touch_sim", {"gain": HELD}),
+            ):
                 stage.send(target)
                 stage.wait(lambda: _arrived(stage), "the reference arrives")
                 mark = stage.mark()
@@ -51,18 +56,21 @@ def _saturation(seconds: float, integral_gain: float | None) -> Any:
             recording = stage.since(mark)
         stage.remote.call(Trigger, "pid_controller/reset", Trigger.Request())
         full = np.abs(efforts) >= limit - 1e-9
-        held_fast = (
-            full.mean(axis=0) > 0.9
-        )  # the other joints wind up rightly: they push against the hand within limits
-        states = recording.joints("joint_states", stage.names).values
+        # The other joints wind up rightly: they push against the hand within their limits.
+        held_fast = full.mean(axis=0) > 0.9
+        states = recording.joints("joint_states", stage.names)
         goal = recording.joints("joint_reference", stage.names).values[-1]
-        beyond = (states - goal) * np.sign(goal - states[0])
+        beyond = (states.values - goal) * np.sign(goal - states.values[0])
         overshoot = float(beyond[:, held_fast].max(initial=0.0))
-        left = float(np.abs(states[-1] - goal)[held_fast].max(initial=0.0))
+        last = states.received > states.received[-1] - 1.0
+        off = float(np.median(np.abs(states.values - goal)[last][:, held_fast], axis=0).max(initial=0.0))
         return [
             Check("saturated", f"{held_fast.sum()} joints for {seconds:g} s", bool(held_fast.any())),
-            Check("no windup", f"overshoot {1e3 * overshoot:.1f} mrad", overshoot < OVERSHOOT),
-            Check("arrives", f"{1e3 * left:.1f} mrad off 2 s after the release", left < OVERSHOOT),
+            Check(
+                "no windup",
+                f"{1e3 * off:.0f} mrad off a second after the release, overshoot {1e3 * overshoot:.0f} mrad",
+                off < WOUND_UP,
+            ),
         ]
 
     return play
@@ -108,11 +116,12 @@ def _good_parameters(stage: Stage) -> list[Check]:
             with _changed(stage, node, values) as (successful, _):
                 taken.append(successful)
                 stage.sleep(0.3)
+        on_course = follows(stage, mark)
         recording = stage.since(mark)
     step = largest_step(recording, stage.names)
     return [
         Check("each is taken", f"{sum(taken)} of {len(taken)}", all(taken)),
-        on_course(recording, stage.names),
+        on_course,
         Check("the effort does not jump", f"by {step:.2f} N·m at most", step < SMALL_STEP),
     ]
 
@@ -128,14 +137,13 @@ def _bad_parameters(stage: Stage) -> list[Check]:
             refused += not successful
             kept += stage.remote.parameters(node, names) == before
             reasons.add(reason)
-        stage.sleep(0.3)
-        recording = stage.since(mark)
+        on_course = follows(stage, mark)
     one_line = all(reason and "\n" not in reason for reason in reasons)
     return [
         Check("each is refused", f"{refused} of {len(BAD)}", refused == len(BAD)),
         Check("whole", f"{kept} of {len(BAD)} left all as it was", kept == len(BAD)),
         Check("with one line that says why", "one line each" if one_line else "not each", one_line),
-        on_course(recording, stage.names),
+        on_course,
     ]
 
 
@@ -158,7 +166,7 @@ def _enable(stage: Stage) -> list[Check]:
         off = stage.since(mark).joints("joint_command", stage.names, "effort").values[-20:]
         mark = stage.mark()
         stage.remote.call(SetBool, "pid_controller/enable", SetBool.Request(data=True))
-        back = back_on_course(stage)
+        back = follows(stage)
         on = stage.since(mark).joints("joint_command", stage.names, "effort").values
     largest = float(np.abs(off).max(initial=0.0))
     begun = on[(np.abs(on) > 0.0).any(axis=1)][:FIRST]
@@ -174,7 +182,10 @@ def _enable(stage: Stage) -> list[Check]:
 
 def _under_load(stage: Stage) -> list[Check]:
     """Gains change and the controller is reset while a hand holds the device off its reference."""
-    with _changed(stage, "touch_sim", {"gain": HELD}), _changed(stage, "pid_controller", EVEN_IF_LATE):
+    with (
+        _changed(stage, "touch_sim", {"gain": HELD}),
+        _changed(stage, "pid_controller", PATIENT | EVEN_IF_LATE),
+    ):
         stage.send(stage.between(0.5))
         stage.wait(lambda: _arrived(stage), "the reference arrives")
         stage.sleep(1.0)
@@ -200,14 +211,14 @@ FAULTS = (
     Fault(
         "saturation",
         "A hand holds the device for 3 s while it is sent far away, then lets go; integral gain 1.",
-        "The effort stands at its limit; the integral does not wind up, so the arm does not overshoot.",
+        "The effort stands at its limit; the integral does not wind up and hold the arm off its goal afterwards.",
         _saturation(3.0, 1.0),
         frozenset({Need.TWIN}),
     ),
     Fault(
         "long_saturation",
         "The same for 60 s, with the integral gain as it is.",
-        "The effort stands at its limit; the integral does not wind up, so the arm does not overshoot.",
+        "The effort stands at its limit; the integral does not wind up and hold the arm off its goal afterwards.",
         _saturation(60.0, None),
         frozenset({Need.TWIN}),
         long=True,
@@ -215,7 +226,7 @@ FAULTS = (
     Fault(
         "good_parameters",
         "Gains (an integer among them), algebra, rule and speed limit are changed in motion.",
-        "Each is taken, without a jump of the effort; the arm stays on course.",
+        "Each is taken, without a jump of the effort; the arm follows.",
         _good_parameters,
     ),
     Fault(

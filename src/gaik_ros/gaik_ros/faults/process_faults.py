@@ -10,7 +10,7 @@ from contextlib import contextmanager
 import numpy as np
 
 from gaik_ros.faults.fault import Check, Fault, Need
-from gaik_ros.faults.measures import back_on_course, let_go, longest_gap, reported, stopped
+from gaik_ros.faults.measures import follows, let_go, longest_gap, reported, stopped
 from gaik_ros.faults.probe import Recording
 from gaik_ros.faults.stage import Stage
 from gaik_ros.health import ERROR, WARN
@@ -36,7 +36,7 @@ def _stall(node: str) -> Fault:
         with stage.moving():
             mark = stage.mark()
             stage.own_processes.stall(node, STALL)
-            back = back_on_course(stage)
+            back = follows(stage)
             gap = longest_gap(stage.since(mark), "joint_command")
         same = stage.own_processes.identities == others
         return [
@@ -68,7 +68,7 @@ def _end(node: str, number: signal.Signals, verb: str) -> Fault:
             mark = stage.mark()
             processes.start(node)
             stage.wait(lambda: stage.since(mark).count("setpoint") > 20, "setpoints come")
-            checks.append(back_on_course(stage))
+            checks.append(follows(stage))
             kept = others.items() <= processes.identities.items()
         checks.append(Check("no other is restarted", "none was" if kept else "a process is another", kept))
         return [_quiet_end(code, errors), *checks] if quietly else checks

@@ -12,7 +12,7 @@ from rclpy.parameter import Parameter, parameter_value_to_python
 
 from gaik_ros.faults.fault import StageError
 
-PATIENCE = 30.0  # s for what takes a moment on an idle machine
+PATIENCE = 60.0  # s for what takes a moment on an idle machine
 
 
 def wait_until(condition: Callable[[], bool], patience: float = PATIENCE) -> bool:

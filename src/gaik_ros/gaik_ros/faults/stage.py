@@ -13,7 +13,7 @@ from geometry_msgs.msg import Point
 from numpy.typing import ArrayLike, NDArray
 
 from gaik_ros import qos
-from gaik_ros.conversions import array_to_point, joint_values
+from gaik_ros.conversions import JointMessageError, array_to_point, joint_values
 from gaik_ros.faults.cable import Cable
 from gaik_ros.faults.facts import Facts
 from gaik_ros.faults.fault import StageError
@@ -94,16 +94,16 @@ class Stage:
     # What it can look at and wait for
 
     def angles(self) -> Array | None:
-        """The joints as the device says, (dof,); None before the first."""
+        """The joints as the device says, (dof,); None before the first, and where the newest does not hold them."""
         message = self.probe.newest("joint_states")
-        return None if message is None else joint_values(message, self.names)
+        try:
+            return None if message is None else joint_values(message, self.names)
+        except JointMessageError:
+            return None
 
     def distance(self, position: Array) -> float:
         """How far the tip is from `position` (3,) m; infinite while that is not known."""
-        try:
-            angles = self.angles()
-        except ValueError:
-            return math.inf
+        angles = self.angles()
         return math.inf if angles is None else float(np.linalg.norm(self.point(angles) - position))
 
     def mark(self) -> dict[str, int]:

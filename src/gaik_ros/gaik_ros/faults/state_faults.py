@@ -10,7 +10,7 @@ from sensor_msgs.msg import JointState
 
 from gaik_ros.faults.cable import Alteration
 from gaik_ros.faults.fault import Check, Fault, Need
-from gaik_ros.faults.measures import back_on_course, let_go, on_course, reported
+from gaik_ros.faults.measures import follows, let_go, reported
 from gaik_ros.faults.stage import Stage
 from gaik_ros.health import ERROR
 from gaik_ros.joint_control import Mode
@@ -22,7 +22,7 @@ AS_SILENCE = (
     "They do not count as states: zero effort after the state timeout and ERROR on /diagnostics; with the next good "
     "one the controller takes hold of the device where it is, and the arm follows again."
 )
-AS_GOOD = "They are read by name: the arm stays on course."
+AS_GOOD = "They are read by name: the arm follows."
 
 
 def _lost(name: str, does: str, make: Callable[[], Alteration]) -> Fault:
@@ -36,7 +36,7 @@ def _lost(name: str, does: str, make: Callable[[], Alteration]) -> Fault:
                 loud = reported(stage, mark, "pid_controller: control", ERROR, Mode.STATE_LOST)
                 recording = stage.since(mark)
             silent = let_go(recording, stage.names, stage.own_cable.cut_at, stage.facts.state_timeout)
-            return [silent, loud, back_on_course(stage)]
+            return [silent, loud, follows(stage)]
 
     return Fault(name, does, AS_SILENCE, play, frozenset({Need.CABLE}))
 
@@ -48,13 +48,9 @@ def _harmless(name: str, does: str, alteration: Alteration, promises: str = AS_G
         with stage.moving():
             mark = stage.mark()
             with stage.own_cable.altered_by(alteration):
-                stage.sleep(DURATION)
-                recording = stage.since(mark)
+                on_course = follows(stage, mark)
                 altered = stage.own_cable.altered
-        return [
-            on_course(recording, stage.names),
-            Check("altered", f"{altered} messages altered", altered > 0),
-        ]
+        return [on_course, Check("altered", f"{altered} messages altered", altered > 0)]
 
     return Fault(name, does, promises, play, frozenset({Need.CABLE}))
 
@@ -73,7 +69,7 @@ def _freeze(stage: Stage) -> list[Check]:
         with stage.own_cable.altered_by(frozen):
             stage.sleep(DURATION)
         count = stage.since(mark).count("joint_command")
-        return [Check("the control goes on", f"{count} commands", count >= 10), back_on_course(stage)]
+        return [Check("the control goes on", f"{count} commands", count >= 10), follows(stage)]
 
 
 def _repeat() -> Alteration:
@@ -160,12 +156,12 @@ FAULTS = (
         "states_nan_velocity",
         "joint_states with velocities of NaN.",
         _nan_velocity,
-        "Only positions are used: the arm stays on course.",
+        "Only positions are used: the arm follows.",
     ),
     _harmless(
         "state_stamps_step",
         "The stamps of joint_states step by an hour, forth and back.",
         _stepping,
-        "Ages are of receipt, by the steady clock: the arm stays on course.",
+        "Ages are of receipt, by the steady clock: the arm follows.",
     ),
 )
