@@ -4,9 +4,14 @@ PYTHON ?= python3
 VENV ?= .venv
 ARGS ?=
 MINUTES ?= 20
+WORKERS ?= 2
 
 BIN := $(VENV)/bin
 PACKAGES := src/gaik_core src/gaik_ros src/touch_sim
+# Files of tests are dealt to workers; those that mostly wait come first, so that none is left over at the end.
+TESTS := test src/gaik_ros src/touch_sim src/gaik_core
+PYTEST := ROS_PYTHON_CHECK_FIELDS=1 $(BIN)/python -m pytest
+DEALT := --numprocesses $(WORKERS) --dist loadfile --no-loadscope-reorder
 INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt
 DESCRIBED := $(wildcard $(addsuffix /setup.py,$(PACKAGES)) $(addsuffix /setup.cfg,$(PACKAGES)))
 
@@ -22,10 +27,10 @@ demo: $(VENV)/ready ## watch the twin follow a circle and a lemniscate; options 
 test: unit lint ## run all tests, then ruff and mypy; options of pytest by ARGS="-k solver"
 
 unit: $(VENV)/ready-to-test
-	@ROS_PYTHON_CHECK_FIELDS=1 $(BIN)/python -m pytest $(PACKAGES) test --ignore test/test_faults.py $(ARGS)
+	@$(PYTEST) $(DEALT) $(TESTS) --ignore test/test_faults.py $(ARGS)
 
 faults: $(VENV)/ready-to-test ## every fault, played against the suite: ten minutes on a machine that is otherwise idle
-	@ROS_PYTHON_CHECK_FIELDS=1 $(BIN)/python -m pytest test/test_faults.py $(ARGS)
+	@$(PYTEST) test/test_faults.py $(ARGS)
 
 lint: $(VENV)/ready-to-test ## ruff and mypy alone
 	@$(BIN)/ruff check --quiet . && $(BIN)/ruff format --quiet --check . && echo "ruff: clean"
@@ -35,7 +40,7 @@ view: $(VENV)/ready ## the suite with a live page on 127.0.0.1: drag the arm, pr
 	@$(BIN)/python -m touch_sim.view $(ARGS)
 
 nightly: $(VENV)/ready-to-test ## the long tests too: every fault, 100 000 examples of each fuzz test
-	@ROS_PYTHON_CHECK_FIELDS=1 GAIK_NIGHTLY=1 $(BIN)/python -m pytest $(PACKAGES) test $(ARGS)
+	@GAIK_NIGHTLY=1 $(PYTEST) $(TESTS) $(ARGS)
 
 soak: $(VENV)/ready ## run the suite for MINUTES=20 and report memory and periods over time
 	@$(BIN)/python -m touch_sim.soak --minutes $(MINUTES) $(ARGS)
