@@ -17,6 +17,7 @@ from gaik_ros.health import ERROR, WARN
 from gaik_ros.joint_control import Mode
 
 STALL = 0.2  # s
+LEAD_IN = 0.1  # s of the recording before it
 WATCHED = 1.0  # s after a node's end
 
 DEVICE, CONTROLLER, IK, TRAJECTORY = "touch_sim", "pid_controller", "ik_node", "trajectory_publisher"
@@ -35,6 +36,7 @@ def _stall(node: str) -> Fault:
         others = stage.own_processes.identities
         with stage.moving():
             mark = stage.mark()
+            stage.sleep(LEAD_IN)
             stage.own_processes.stall(node, STALL)
             back = follows(stage)
             gap = longest_gap(stage.since(mark), "joint_command")

@@ -16,7 +16,7 @@ from gaik_ros.faults.facts import read_facts
 from gaik_ros.faults.fault import Check, Fault, Need, Outcome, StageError
 from gaik_ros.faults.invariants import efforts_bounded, nodes_alive, recovers, reference_bounded
 from gaik_ros.faults.probe import Probe
-from gaik_ros.faults.remote import Remote
+from gaik_ros.faults.remote import Remote, wait_until
 from gaik_ros.faults.stage import NotSeenError, Stage
 from gaik_ros.faults.suite_processes import SUITE, SuiteProcesses
 from gaik_ros.run import running
@@ -44,9 +44,12 @@ class Rig:
                 f"it needs joint_states to come through it: start the device with -r joint_states:={DEVICE_TOPIC} "
                 f"and give --cable {DEVICE_TOPIC}, or give --start-suite"
             )
-        if Need.TWIN in fault.needs and DEVICE not in self.stage.present():
+        if Need.TWIN in fault.needs and not own and not wait_until(self._sees_twin, DISCOVERY):
             return "it needs the twin touch_sim as the device"
         return ""
+
+    def _sees_twin(self) -> bool:
+        return DEVICE in self.stage.present()
 
     def play(self, fault: Fault) -> Outcome:
         """Play one fault. StageError: it cannot be played here."""
