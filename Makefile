@@ -64,6 +64,7 @@ out/bench/ready: benchmark/requirements.txt
 
 pictures: $(VENV)/ready ## the pictures and tables that the docs show, all but the benchmark's
 	@$(BIN)/python -m touch_sim.pictures
+	@$(BIN)/python docs/algebra_pictures.py
 	@$(BIN)/gaik reproduce --docs docs
 
 docs: $(VENV)/ready ## the documentation as a site, into out/site

@@ -97,7 +97,7 @@ class Watch:
                 findings.append((WARN, f"{count} publishers on {topic}"))
                 if topic not in self._rivals:
                     self._node.get_logger().warning(
-                        f"{count} publishers on {topic}: they will pull the device to and fro"
+                        f"{count} publishers on {topic}: if both speak at once, the device is pulled to and fro"
                     )
                 self._rivals.add(topic)
         level, message = worst(findings)

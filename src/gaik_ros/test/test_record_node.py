@@ -106,16 +106,19 @@ def test_a_signal_completes_the_bag(talking, tmp_path, number):
 
 
 def test_it_ends_by_itself_after_the_duration(talking, tmp_path):
-    process = start(tmp_path, "-p", "duration:=2")
+    process = start(tmp_path, "-p", "duration:=4")  # longer than discovery can take
     try:
-        wait_until(lambda: talking.states.get_subscription_count() == 1)
-        talking.send([0.0, 0.0, 0.0])
+        while process.poll() is None:
+            talking.send([0.0, 0.0, 0.0])
+            time.sleep(0.1)
         _, said = process.communicate(timeout=60)
     finally:
         process.kill()
     assert process.returncode == 0
     assert "Traceback" not in said
-    assert read_bag(tmp_path / "run").setpoints().time.size == 1
+    times = read_bag(tmp_path / "run").setpoints().time
+    assert times.size > 0
+    assert np.ptp(times) < 4.0
 
 
 def test_a_bag_that_is_there_is_refused_in_one_line(tmp_path):

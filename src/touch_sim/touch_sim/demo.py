@@ -9,28 +9,21 @@ said in one line.
 from __future__ import annotations
 
 import argparse
-import math
 import signal
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 
-BAD_OPTION, FAILED, INTERRUPTED = 2, 1, 130
-
-FROM_SOURCE = "-e src/gaik_core -e src/gaik_ros -e src/touch_sim"
-INSTALL = {  # module -> what pip installs it by
-    "rclpy": "'ros-jazzy-rclpy[fastrtps]' ros-jazzy-common-interfaces",
-    "geometry_msgs": "ros-jazzy-common-interfaces",
-    "sensor_msgs": "ros-jazzy-common-interfaces",
-    "diagnostic_msgs": "ros-jazzy-common-interfaces",
-    "std_srvs": "ros-jazzy-common-interfaces",
-    "rcl_interfaces": "ros-jazzy-common-interfaces",
-    "yaml": "PyYAML",
-    "mpl_toolkits": "matplotlib",
-    "gaik_core": FROM_SOURCE,
-    "gaik_ros": FROM_SOURCE,
-    "touch_sim": FROM_SOURCE,
-}
+from touch_sim.command_line import (
+    BAD_OPTION,
+    FAILED,
+    INTERRUPTED,
+    Parser,
+    complain,
+    complain_of_missing,
+    split_ros_arguments,
+    within,
+)
 
 EPILOG = """\
 The error is the distance from the measured tip to the path's point at the same time. The tip has the stamp of its
@@ -43,21 +36,15 @@ Arguments after --ros-args go to the nodes: --ros-args -p pid_controller:gains.p
 
 def main(args: Sequence[str] | None = None) -> int:
     """Entry point of the executable; returns the exit code."""
-    arguments = list(sys.argv[1:] if args is None else args)
-    cut = arguments.index("--ros-args") if "--ros-args" in arguments else len(arguments)
+    own, ros_arguments = split_ros_arguments(sys.argv[1:] if args is None else args)
     try:
-        options = _parser().parse_args(arguments[:cut])
+        options = _parser().parse_args(own)
         signal.signal(signal.SIGTERM, _interrupt)
-        return _demonstrate(options, arguments[cut:])
+        return _demonstrate(options, ros_arguments)
     except ModuleNotFoundError as missing:
-        name = (missing.name or "").split(".")[0]
-        return _complain(
-            f"Python module {name} is missing; install it with: "
-            f"{sys.executable} -m pip install {INSTALL.get(name, name)}",
-            FAILED,
-        )
+        return complain_of_missing("demo", missing)
     except KeyboardInterrupt:
-        return _complain("interrupted", INTERRUPTED)
+        return complain("demo", "interrupted", INTERRUPTED)
 
 
 def _demonstrate(options: argparse.Namespace, ros_arguments: list[str]) -> int:
@@ -83,9 +70,9 @@ def _demonstrate(options: argparse.Namespace, ros_arguments: list[str]) -> int:
         rclpy.init(args=["demo", *ros_arguments], signal_handler_options=SignalHandlerOptions.NO)
         results = run_demo(suite, paths, options.laps, progress_for(sys.stderr))
     except DemoError as reason:
-        return _complain(str(reason), FAILED)
+        return complain("demo", str(reason), FAILED)
     except (ValueError, OSError, NameValidationException, rclpy_implementation.RCLError) as reason:
-        return _complain(str(reason), BAD_OPTION)
+        return complain("demo", str(reason), BAD_OPTION)
     finally:
         rclpy.try_shutdown()
     print(write(results, options.out))
@@ -93,39 +80,30 @@ def _demonstrate(options: argparse.Namespace, ros_arguments: list[str]) -> int:
         if options.record:
             print(write_bag(results, suite.namespace, options.out))
     except (ValueError, OSError) as reason:
-        return _complain(str(reason), FAILED)
+        return complain("demo", str(reason), FAILED)
     return 0
 
 
-class _Parser(argparse.ArgumentParser):
-    """Says what is wrong in one line, without the usage before it."""
-
-    def error(self, message: str) -> None:  # type: ignore[override]
-        self.exit(BAD_OPTION, f"{self.prog}: {message} (--help lists the options)\n")
-
-
-def _parser() -> _Parser:
-    parser = _Parser(
+def _parser() -> Parser:
+    parser = Parser(
         prog="demo",
         description="Follow a circle and a lemniscate with the twin of a Touch, on real ROS 2 nodes.",
         epilog=EPILOG,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-        allow_abbrev=False,
     )
     add = parser.add_argument
     add("--path", choices=("circle", "lemniscate", "both"), default="both", help="what to follow (both)")
-    add("--laps", type=_within(int, 1, 1000), default=1, help="laps of each path (1)")
-    add("--period", type=_within(float, 0.5, 3600), default=6.3, metavar="S", help="time of a lap in s (6.3)")
+    add("--laps", type=within(int, 1, 1000), default=1, help="laps of each path (1)")
+    add("--period", type=within(float, 0.5, 3600), default=6.3, metavar="S", help="time of a lap in s (6.3)")
     add(
         "--setpoint-rate",
-        type=_within(float, 1, 1000),
+        type=within(float, 1, 1000),
         default=100.0,
         metavar="HZ",
         help="setpoints a second (100)",
     )
     add(
         "--rate",
-        type=_within(float, 10, 10_000),
+        type=within(float, 10, 10_000),
         default=1000.0,
         metavar="HZ",
         help="rate of controller and twin (1000)",
@@ -144,29 +122,8 @@ def _parser() -> _Parser:
     return parser
 
 
-def _within(number: Callable[[str], float], low: float, high: float) -> Callable[[str], float]:
-    """Return a reader of numbers from `low` to `high`."""
-    kind = "a whole number" if number is int else "a number"
-
-    def read(text: str) -> float:
-        try:
-            value = number(text)
-        except ValueError:
-            value = math.nan
-        if not low <= value <= high:
-            raise argparse.ArgumentTypeError(f"{text!r}; expected {kind} from {low:g} to {high:g}")
-        return value
-
-    return read
-
-
 def _interrupt(number: int, frame: object) -> None:
     raise KeyboardInterrupt
-
-
-def _complain(message: str, code: int) -> int:
-    print(f"demo: {' '.join(message.split())}", file=sys.stderr)
-    return code
 
 
 if __name__ == "__main__":

@@ -55,7 +55,7 @@ def follow_with_nodes(algebra: str, feed_forward: bool = False, period: float = 
         from touch_sim.isolation import follow_isolated
         from touch_sim.suite import SuiteOptions
     except ModuleNotFoundError as missing:
-        from touch_sim.demo import INSTALL
+        from touch_sim.command_line import INSTALL
 
         name = (missing.name or "").split(".")[0]
         command = f"pip install {INSTALL.get(name, name)}"

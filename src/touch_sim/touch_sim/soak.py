@@ -8,7 +8,6 @@ Exit code 0 where the memory is flat, 1 where it is not: where the median of the
 
 from __future__ import annotations
 
-import argparse
 import os
 import sys
 import time
@@ -24,6 +23,7 @@ from std_srvs.srv import Trigger
 from gaik_ros.faults.remote import Remote
 from gaik_ros.pid_controller import PidController
 from gaik_ros.run import running
+from touch_sim.command_line import Parser, within
 from touch_sim.isolation import isolated_context
 from touch_sim.loop_meter import LoopMeter
 from touch_sim.suite import Suite, SuiteOptions
@@ -96,12 +96,9 @@ def _sample(meter: LoopMeter, now: float) -> Sample:
 
 def main(args: Sequence[str] | None = None) -> int:
     """Entry point of the program; returns the exit code."""
-    parser = argparse.ArgumentParser(prog="soak", description=__doc__.splitlines()[0] if __doc__ else "")
-    parser.add_argument("--minutes", type=float, default=20.0, help="how long (20)")
+    parser = Parser("soak", "Run the suite for a long time and report memory and periods.", "")
+    parser.add_argument("--minutes", type=within(float, 0.01, 100_000), default=20.0, help="how long (20)")
     given = parser.parse_args(args)
-    if not 0.0 < given.minutes < float("inf"):
-        print(f"soak: --minutes is {given.minutes:g}: it must be above 0", file=sys.stderr)
-        return 2
     try:
         samples = soak(60.0 * given.minutes, lambda sample: print(sample, flush=True))
     except KeyboardInterrupt:

@@ -14,12 +14,10 @@ import sys
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from touch_sim.demo import BAD_OPTION, FAILED, INSTALL
+from touch_sim.command_line import BAD_OPTION, Parser, complain, complain_of_missing, split_ros_arguments
 
 if TYPE_CHECKING:
     from rclpy.node import Node
-
-INSTALL_VIEW = INSTALL | {"viser": "'viser>=1.1,<2'", "rich": "'viser>=1.1,<2'"}
 
 EPILOG = """\
 On the page: drag the ball (in the plane of the screen) or an arrow (along one axis), and the arm follows; or start a
@@ -31,18 +29,12 @@ Arguments after --ros-args go to the nodes: --ros-args -p pid_controller:gains.p
 
 def main(args: Sequence[str] | None = None) -> int:
     """Entry point of the executable; returns the exit code."""
-    arguments = list(sys.argv[1:] if args is None else args)
-    cut = arguments.index("--ros-args") if "--ros-args" in arguments else len(arguments)
-    options = _parser().parse_args(arguments[:cut])
+    own, ros_arguments = split_ros_arguments(sys.argv[1:] if args is None else args)
+    options = _parser().parse_args(own)
     try:
-        return _view(options, arguments[cut:])
+        return _view(options, ros_arguments)
     except ModuleNotFoundError as missing:
-        name = (missing.name or "").split(".")[0]
-        return _complain(
-            f"Python module {name} is missing; install it with: "
-            f"{sys.executable} -m pip install {INSTALL_VIEW.get(name, name)}",
-            FAILED,
-        )
+        return complain_of_missing("view", missing)
     except KeyboardInterrupt:  # before there is anything to end
         return 0
 
@@ -71,7 +63,7 @@ def _view(options: argparse.Namespace, ros_arguments: list[str]) -> int:
             finally:
                 runner.destroy()
         except (ValueError, OSError, NameValidationException, rclpy_implementation.RCLError) as reason:
-            return _complain(str(reason), BAD_OPTION)
+            return complain("view", str(reason), BAD_OPTION)
         finally:
             rclpy.try_shutdown()
     return 0
@@ -116,20 +108,11 @@ def _has_screen() -> bool:
     )
 
 
-class _Parser(argparse.ArgumentParser):
-    """Says what is wrong in one line, without the usage before it."""
-
-    def error(self, message: str) -> None:  # type: ignore[override]
-        self.exit(BAD_OPTION, f"{self.prog}: {message} (--help lists the options)\n")
-
-
-def _parser() -> _Parser:
-    parser = _Parser(
+def _parser() -> Parser:
+    parser = Parser(
         prog="view",
         description="Show the suite with the twin of a Touch on a live page in the browser.",
         epilog=EPILOG,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-        allow_abbrev=False,
     )
     add = parser.add_argument
     add("--port", type=int, default=8080, help="of the page, or the next that is free; 0: any (8080)")
@@ -140,11 +123,6 @@ def _parser() -> _Parser:
     add("--feed-forward", action="store_true", help="feed the reference's velocity forward")
     add("--namespace", default="", help="namespace of all nodes (none)")
     return parser
-
-
-def _complain(message: str, code: int) -> int:
-    print(f"view: {' '.join(message.split())}", file=sys.stderr)
-    return code
 
 
 if __name__ == "__main__":

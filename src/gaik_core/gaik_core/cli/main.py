@@ -6,15 +6,14 @@ Exit codes: 0; 1 where what was asked for could not be had; 2 for bad input; 130
 from __future__ import annotations
 
 import os
-import re
 import sys
-from argparse import ArgumentParser, RawDescriptionHelpFormatter
+from argparse import ArgumentParser
 from collections.abc import Sequence
 from importlib.metadata import EntryPoint, entry_points
-from typing import Any, NoReturn
 
 from gaik_core import __version__
 from gaik_core.cli.command import GROUP, Command
+from gaik_core.cli.parser import Parser
 from gaik_core.cli.terminal import complain
 from gaik_core.errors import GaikError, UnknownNameError
 
@@ -81,30 +80,6 @@ def unavailable(point: EntryPoint, reason: str) -> Command:
         parser.add_argument("rest", nargs="*")
 
     return Command(f"(not available: {reason})", (), configure, run)
-
-
-class Formatter(RawDescriptionHelpFormatter):
-    """Help with room for the longest option beside its text."""
-
-    def __init__(self, prog: str) -> None:
-        super().__init__(prog, max_help_position=30)
-        self._action_max_length = (
-            16  # argparse forgets that subcommands are indented, and would break the longest
-        )
-
-
-class Parser(ArgumentParser):
-    """A parser whose errors are one line, and that takes -1e-3 for a number."""
-
-    def __init__(self, **options: Any) -> None:
-        super().__init__(formatter_class=Formatter, **options)
-        # Before Python 3.14 argparse takes -0.001 for a number and -1e-3 for an option.
-        self._negative_number_matcher = re.compile(r"^-(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?$|^-(inf|nan)$")
-
-    def error(self, message: str) -> NoReturn:
-        """Say what was wrong and leave with exit code 2."""
-        complain(f"{self.prog}: {message} (see {self.prog} --help)")
-        sys.exit(2)
 
 
 def build_parser(commands: dict[str, Command]) -> ArgumentParser:

@@ -10,8 +10,8 @@ import signal
 import sys
 from collections.abc import Sequence
 from pathlib import Path
-from typing import NoReturn
 
+from gaik_core.cli.parser import Parser
 from gaik_ros.faults.catalogue import FAULTS, fault_by_name
 from gaik_ros.faults.fault import Fault, Outcome, StageError
 from gaik_ros.faults.report import lines, listing, page
@@ -21,15 +21,8 @@ HELD, BROKEN, WRONG = 0, 1, 2
 OWN_NAMESPACE = "faults"
 
 
-class _Parser(argparse.ArgumentParser):
-    """Says what is wrong in one line."""
-
-    def error(self, message: str) -> NoReturn:
-        self.exit(WRONG, f"{self.prog}: {message}\n")
-
-
 def _arguments(args: Sequence[str] | None) -> argparse.Namespace:
-    parser = _Parser(
+    parser = Parser(
         prog="inject",
         description="Play faults against a running suite and say whether what is promised holds. The arm moves: let "
         "nobody else send setpoints meanwhile.",
