@@ -10,6 +10,9 @@ import pytest
 
 PATIENCE = 240  # s; a fresh machine compiles first
 GAIK = [sys.executable, "-c", "import sys; from gaik_core.cli.main import main; sys.exit(main())"]
+# A quarter of the usual rate leaves the machine to the other tests.
+RATE = ["--rate", "250"]
+RATES = ["-p", "pid_controller:rate:=250.0", "-p", "touch_sim:rate:=250.0"]
 
 
 def run(*command):
@@ -25,7 +28,7 @@ def run(*command):
 def recorded(tmp_path_factory):
     """The folder of a demo that was recorded."""
     out = tmp_path_factory.mktemp("demo")
-    said = run(sys.executable, "-m", "touch_sim.demo", "--period", "5", "--record", "--out", out)
+    said = run(sys.executable, "-m", "touch_sim.demo", "--period", "5", *RATE, "--record", "--out", out)
     assert str(out / "run" / "run.mcap") in said
     return out
 
@@ -46,7 +49,9 @@ def test_a_demo_s_bag_says_what_the_demo_said(recorded):
 
 
 def test_its_setpoints_are_followed_again_and_compared(recorded):
-    replayed = json.loads(run(*GAIK, "replay", recorded / "run", "--out", recorded / "again", "--json"))
+    replayed = json.loads(
+        run(*GAIK, "replay", recorded / "run", *RATES, "--out", recorded / "again", "--json")
+    )
     assert [pair["name"] for pair in replayed["runs"]] == ["run 1", "run 2"]
     for pair in replayed["runs"]:
         assert pair["replayed"]["setpoints"] == pytest.approx(pair["recorded"]["setpoints"], abs=2)
@@ -59,7 +64,7 @@ def test_its_setpoints_are_followed_again_and_compared(recorded):
 
 def test_a_parameter_of_the_twin_s_nodes_is_set(recorded):
     # Held back to a crawl the arm cannot follow: what is set must be seen to act.
-    slow = ["-p", "ik_node:max_joint_speed:=0.02"]
+    slow = [*RATES, "-p", "ik_node:max_joint_speed:=0.02"]
     (pair,) = json.loads(run(*GAIK, "replay", recorded / "run", "--run", "1", *slow, "--json"))["runs"]
     assert pair["replayed"]["rms_m"] > 5 * pair["recorded"]["rms_m"]
 
@@ -68,7 +73,7 @@ def test_a_running_suite_is_fed(recorded):
     """The suite that `touch_sim.view` or a launch file starts, here in a namespace of its own."""
     code = (
         "import rclpy; from gaik_ros.run import spin_together; from touch_sim.suite import Suite, SuiteOptions\n"
-        "rclpy.init(); spin_together(Suite(SuiteOptions(namespace='kept')).nodes); rclpy.try_shutdown()"
+        "rclpy.init(); spin_together(Suite(SuiteOptions(namespace='kept', rate=250.0)).nodes); rclpy.try_shutdown()"
     )
     suite = subprocess.Popen([sys.executable, "-c", code])
     try:

@@ -21,6 +21,8 @@ pytest.importorskip("viser", reason="no viser; install it with: pip install 'vis
 if browser_path() is None:
     pytest.skip(MISSING, allow_module_level=True)
 
+pytestmark = pytest.mark.slow
+
 CHAIN = KinematicChain.load("touch_device")
 X = np.array([1.0, 0.0, 0.0])
 SETTLED = 2e-3  # m

@@ -17,6 +17,8 @@ from gaik_core.experiments.page import page
 from touch_sim import experiments
 from touch_sim.isolation import isolated_context
 
+pytestmark = pytest.mark.slow
+
 LAP = 2.0  # s
 
 

@@ -24,6 +24,7 @@ def test_a_leak_is_seen(leak):
     assert growth(200.0 + leak * np.arange(40)) > FLAT
 
 
+@pytest.mark.slow
 def test_a_short_soak_reports_memory_and_periods():
     command = [sys.executable, "-m", "touch_sim.soak", "--minutes", "0.1"]
     done = subprocess.run(command, capture_output=True, text=True, timeout=240, check=False)

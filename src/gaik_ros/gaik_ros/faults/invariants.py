@@ -57,7 +57,7 @@ def recovers(stage: Stage) -> Check:
     began_away = stage.facts.away
     try:
         taken = stage.go(began_away)
-        stage.wait(stage.at_rest, "the arm comes to rest")
+        stage.rest()
     except NotSeenError as error:
         return Check(RECOVERY, f"not seen: {error}", False)
     return Check(RECOVERY, f"{taken:.1f} s", True)

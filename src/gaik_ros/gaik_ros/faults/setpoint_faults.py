@@ -113,7 +113,7 @@ def _nearest(stage: Stage, target: Array, results: Sequence[str]) -> list[Check]
     error = float(verdict["error_m"])
     consistent = abs(np.linalg.norm(target - nearest) - error) < 1e-5
     taken = stage.wait(lambda: stage.distance(nearest) < ARRIVED, "the arm goes to the nearest point")
-    stage.wait(stage.at_rest, "the arm comes to rest")
+    stage.rest()
     return [
         *named,
         Check("it names the nearest point and the distance", f"{error:.4f} m off", bool(consistent)),
@@ -127,7 +127,7 @@ def _stop_latched(stage: Stage) -> list[Check]:
     last = stage.between(1.0)
     stage.send(last)
     taken = stage.wait(lambda: stage.distance(last) < ARRIVED, "the last setpoint is carried out")
-    stage.wait(stage.at_rest, "the arm comes to rest")
+    stage.rest()
     mark = stage.mark()
     stage.sleep(1.5)
     angles = stage.since(mark).joints("joint_states", stage.names).values
@@ -214,7 +214,7 @@ def _slow(stage: Stage) -> list[Check]:
         target, due = stage.between(share), time.monotonic() + PAUSE
         stage.send(target)
         stage.wait(lambda target=target: stage.distance(target) < ARRIVED, "it is reached")
-        stage.wait(stage.at_rest, "the arm comes to rest")
+        stage.rest()
         reached += 1
         held = stage.mark()
         stage.sleep(max(0.5, due - time.monotonic()))

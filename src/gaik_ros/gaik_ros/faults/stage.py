@@ -17,7 +17,7 @@ from gaik_ros.conversions import JointMessageError, array_to_point, joint_values
 from gaik_ros.faults.cable import Cable
 from gaik_ros.faults.facts import Facts
 from gaik_ros.faults.fault import StageError
-from gaik_ros.faults.probe import QUIET_PUBLISHER, Probe, Recording
+from gaik_ros.faults.probe import LEAD_RATE, QUIET_PUBLISHER, Probe, Recording
 from gaik_ros.faults.remote import PATIENCE, Remote, wait_until
 from gaik_ros.faults.suite_processes import SuiteProcesses
 
@@ -26,6 +26,7 @@ Array = NDArray[np.float64]
 SWAY_PERIOD = 4.0  # s of one way to and fro: slow, so that the arm is never far behind
 ARRIVED = 1e-3  # m
 CLOSE = 1e-3  # rad, between reference and device at rest
+RESTS = 0.1  # s
 RESEND = 1.0  # s: a node that was restarted may not have heard the first
 
 
@@ -86,6 +87,7 @@ class Stage:
             yield
         finally:
             self.probe.led_by = None
+            time.sleep(2.0 / LEAD_RATE)  # a tick that had begun may still send: not after what follows
 
     def _sway(self, dt: float) -> None:
         self._time += dt
@@ -142,9 +144,21 @@ class Stage:
     def settle(self) -> None:
         """Bring the arm to rest at home, where every fault begins."""
         self.go(self.facts.home)
-        self.wait(self.at_rest, "the arm comes to rest")
+        self.rest()
 
-    def at_rest(self) -> bool:
+    def rest(self) -> None:
+        """Wait until the arm is at rest, and not only for the moment in which it turns round."""
+        moved = time.monotonic()
+
+        def lasting() -> bool:
+            nonlocal moved
+            if not self._at_rest():
+                moved = time.monotonic()
+            return time.monotonic() - moved > RESTS
+
+        self.wait(lasting, "the arm comes to rest")
+
+    def _at_rest(self) -> bool:
         """Whether the reference stands still and the device is there."""
         reference, angles = self.probe.newest("joint_reference"), self.angles()
         if reference is None or angles is None:
