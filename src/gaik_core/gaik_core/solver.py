@@ -16,6 +16,12 @@ from gaik_core.kernels import descent as kernels
 from gaik_core.kernels import many
 from gaik_core.kernels.kinematics import Chain
 from gaik_core.kernels.posture import settle
+from gaik_core.kernels.problem import (
+    pack_problem,
+    solve_packed,
+    solve_packed_with_restarts,
+    solve_packed_with_trace,
+)
 from gaik_core.kernels.task import POSITION
 from gaik_core.solution import STATUS, Solution, Solutions, Trace
 from gaik_core.targets import Target, pack_target
@@ -28,7 +34,6 @@ __all__ = ["Solution", "Solutions", "Trace", "random_starts", "solve", "solve_ba
 
 _ADAM = Adam()
 _MARQUARDT = LevenbergMarquardt()
-_NO_TRACE = np.empty((0, 2))
 
 
 def solve(
@@ -75,25 +80,28 @@ def solve(
     """
     kind, wanted = pack_target(target)
     angles = copied_vector("start", chain.home if start is None else start, chain.dof)
-    stop = _stop(chain, kind, rule, tolerance, orientation_tolerance, orientation_weight, max_iterations)
-    problem = (
-        algebra_code(algebra), _packed(chain, limits), kind, wanted, stop, rule.kernel, rule.settings, angles,
+    given = (
+        chain, kind, algebra, rule, tolerance, max_iterations, limits, orientation_tolerance, orientation_weight,
     )  # fmt: skip
+    try:
+        packed = _packed_problem(*given)
+    except TypeError:  # something that has no hash
+        packed = _packed_problem.__wrapped__(*given)
     if trace:
-        return _solve_traced(problem, restarts, posture)
+        return _solve_traced(packed, wanted, angles, max_iterations, restarts, posture)
     used = 0
     if restarts:
         starts = random_starts(chain, count("restarts", restarts), seed)
-        status, iterations, error, turn, used = kernels.solve_with_restarts(*problem, starts)
+        status, iterations, error, turn, used = solve_packed_with_restarts(packed, wanted, angles, starts)
     else:
-        status, iterations, error, turn = kernels.solve_once(
-            *problem, kernels.IMPROVEMENT, _NO_TRACE, _NO_TRACE
-        )
+        status, iterations, error, turn = solve_packed(packed, wanted, angles)
     if status == kernels.NOT_FINITE:
         _raise_not_finite(wanted, angles)
     if posture is not None and status == kernels.CONVERGED:
         preferred = finite_vector("posture", posture, chain.dof)
-        more, error, turn = settle(*problem[:5], _MARQUARDT.settings, preferred, angles)
+        stop = _stop(chain, kind, rule, tolerance, orientation_tolerance, orientation_weight, max_iterations)
+        problem = (algebra_code(algebra), _packed(chain, limits), kind, wanted, stop)
+        more, error, turn = settle(*problem, _MARQUARDT.settings, preferred, angles)
         iterations += more
     converged = status == kernels.CONVERGED
     # As Solution(...), without the time it takes to bind eight arguments.
@@ -212,17 +220,17 @@ def random_starts(chain: KinematicChain, count: int, seed: int) -> Array:
     return starts
 
 
-def _solve_traced(problem: kernels.Problem, restarts: int, posture: ArrayLike | None) -> Solution:
+def _solve_traced(
+    packed: Array, target: Array, angles: Array, most: int, restarts: int, posture: ArrayLike | None
+) -> Solution:
     """One descent with every iterate kept."""
     if restarts:
         raise GaikError(f"restarts is {restarts}; expected 0 with trace=True, as a trace is of one descent")
     if posture is not None:
         raise GaikError(f"posture is {posture}; expected None with trace=True, as a trace is of one descent")
-    _, _, _, target, stop, _, _, angles = problem
-    length = stop[-1] + 1
-    trace_angles, trace_errors = np.empty((length, len(angles))), np.empty((length, 2))
-    status, iterations, error, turn = kernels.solve_once(
-        *problem, kernels.IMPROVEMENT, trace_angles, trace_errors
+    trace_angles, trace_errors = np.empty((most + 1, len(angles))), np.empty((most + 1, 2))
+    status, iterations, error, turn = solve_packed_with_trace(
+        packed, target, angles, trace_angles, trace_errors
     )
     if status == kernels.NOT_FINITE:
         _raise_not_finite(target, angles)
@@ -234,6 +242,24 @@ def _solve_traced(problem: kernels.Problem, restarts: int, posture: ArrayLike | 
 def _raise_not_finite(target: Array, start: Array) -> None:
     finite("target", target)
     finite("start", start)
+
+
+@lru_cache(maxsize=256)
+def _packed_problem(
+    chain: KinematicChain,
+    kind: int,
+    algebra: str,
+    rule: UpdateRule,
+    tolerance: float,
+    max_iterations: int,
+    limits: bool | None,
+    orientation_tolerance: float,
+    orientation_weight: float | None,
+) -> Array:
+    """All that a solve takes but for target and start, checked; kept, since most solves only change those two."""
+    code = algebra_code(algebra)
+    stop = _stop(chain, kind, rule, tolerance, orientation_tolerance, orientation_weight, max_iterations)
+    return pack_problem(code, _packed(chain, limits), kind, stop, rule.kernel, rule.settings)
 
 
 def _packed(chain: KinematicChain, limits: bool | None) -> Chain:

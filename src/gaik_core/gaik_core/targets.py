@@ -68,7 +68,7 @@ Target = ArrayLike | Pointing | Pose | Motor
 
 def pack_target(target: Target) -> tuple[int, Array]:
     """The kernels' number of the kind of target, and its numbers; raises ShapeError or NotFiniteError."""
-    if not isinstance(target, _FRAMES):
+    if type(target) is np.ndarray or not isinstance(target, _FRAMES):
         return POSITION, copied_vector("target", target, 3)
     if isinstance(target, Pointing):
         return POINTING, target.packed()

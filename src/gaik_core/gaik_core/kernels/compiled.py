@@ -38,6 +38,14 @@ def inlined(kernel: Kernel) -> Kernel:
     return _njit(kernel, **_FORMULA)
 
 
+def uncounted(kernel: Kernel) -> Kernel:
+    """`inlined`, for what is too long to be part of its caller. It may cut views out of arrays, but make none.
+
+    Nor may it return any, as `inlined` may not: a caller that counts references would give back what was not counted.
+    """
+    return _njit(kernel, **_LONG)
+
+
 def _njit(kernel: Kernel, **options: bool) -> Kernel:
     if njit is None:
         return kernel
@@ -56,6 +64,7 @@ def _known(**options: bool) -> dict[str, bool]:
 
 
 _FORMULA = _known(forceinline=True, _nrt=False)
+_LONG = _known(_nrt=False)
 
 
 def drop_stale_caches() -> None:

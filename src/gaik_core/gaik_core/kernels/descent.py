@@ -7,8 +7,8 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from gaik_core.kernels.compiled import compiled, inlined
-from gaik_core.kernels.kinematics import Chain, kinematics, poses
+from gaik_core.kernels.compiled import inlined, uncounted
+from gaik_core.kernels.kinematics import Chain, kinematics
 from gaik_core.kernels.limits import blocked_axes, blocked_joints, clamp_joints, hold_axes, project_axes
 from gaik_core.kernels.rules import SLOTS, step
 from gaik_core.kernels.task import measure, task_rows
@@ -26,11 +26,11 @@ IMPATIENCE = 0.2
 FAR = 10.0
 """Targets further than this many reaches are pulled in."""
 
+LARGEST, POSE_SIZE = 9, 7
+"""The numbers of the longest target, and of a pose."""
+
 Stop = tuple[float, float, float, int, int]
 """Tolerance (m), orientation tolerance (rad), weight (m/rad), window and most updates."""
-
-Problem = tuple[int, Chain, int, Array, Stop, int, Array, Array]
-"""What every solve takes: algebra, chain, kind of target, target, stop, rule, its settings, angles to start from."""
 
 Outcome = tuple[int, int, float, float]
 """Status, updates made, distance left (m), angle left (rad)."""
@@ -78,30 +78,34 @@ def distance_from_base(chain: Chain, target: Array) -> float:
     return float(length(target[0] - ends[0], target[1] - ends[1], target[2] - ends[2]))
 
 
-@compiled
+@inlined
 def unreachable(chain: Chain, target: Array, tolerance: float) -> bool:
     """Whether the lengths of the links alone rule a target out: too far, or in the hole around the first axis."""
     distance = distance_from_base(chain, target)
     return bool(distance > chain[2][11] + tolerance or distance < chain[2][10] - tolerance)
 
 
-@compiled
-def pull_in(chain: Chain, target: Array) -> Array:
-    """The target, or where it is further than FAR reaches, the point that far on the way to it.
+@inlined
+def pull_in(chain: Chain, target: Array, near: Array) -> None:
+    """Write the target into `near` or, where it is further than FAR reaches, the point that far on the way to it.
 
     The arm stretches toward either alike, and what is descended stays of a size that floating point can square.
     """
+    copy(target, near)
     ends, distance = chain[2], distance_from_base(chain, target)
     furthest = FAR * ends[11]
-    if distance <= furthest:
-        return target
-    near = target.copy()
-    for k in range(3):
-        near[k] = ends[k] + (target[k] - ends[k]) * (furthest / distance)
-    return near
+    if distance > furthest:
+        for k in range(3):
+            near[k] = ends[k] + (target[k] - ends[k]) * (furthest / distance)
 
 
-@compiled
+@inlined
+def room(n: int, joints: int) -> int:
+    """How many numbers of workspace a solve of `n` axes takes: one array, since each that is made costs 25 ns."""
+    return LARGEST + 2 * POSE_SIZE + 7 * n + 9 * joints + SLOTS * max(SLOTS, joints)
+
+
+@uncounted
 def descend(
     algebra: int,
     chain: Chain,
@@ -114,18 +118,25 @@ def descend(
     improvement: float,
     trace_angles: Array,
     trace_errors: Array,
+    work: Array,
 ) -> Outcome:
     """Move `angles` in place until the error of the target is below its tolerance, or stops falling by `improvement`.
 
     `trace_angles` (max_iterations + 1, d) and `trace_errors` (max_iterations + 1, 2) are filled as far as the solve
-    goes; of length 0, they are left alone.
+    goes; of length 0, they are left alone. `work` is what `room` asks for.
     """
     tolerance, orientation_tolerance, weight, window, max_iterations = stop
     axes, couplings, ends, limits, held = chain
-    n, joints = axes.shape[0], angles.shape[0]
-    turned, columns, pose, error = np.empty(n), np.empty((n, 6)), np.empty(7), np.empty(task_rows(kind))
-    jacobian, state = np.empty((error.shape[0], joints)), np.zeros((SLOTS, max(SLOTS, joints)))
-    previous, normal, limited = np.empty(joints), np.empty(joints), limits.shape[1] > 0
+    n, joints, rows = axes.shape[0], angles.shape[0], task_rows(kind)
+    pose, error, free = work[:7], work[POSE_SIZE : POSE_SIZE + rows], work[2 * POSE_SIZE :]
+    turned, columns, free = free[:n], free[n : 7 * n].reshape((n, 6)), free[7 * n :]
+    jacobian, free = free[: rows * joints].reshape((rows, joints)), free[rows * joints :]
+    previous, normal, free = free[:joints], free[joints : 2 * joints], free[2 * joints :]
+    state = free[: SLOTS * max(SLOTS, joints)].reshape((SLOTS, max(SLOTS, joints)))
+    for k in range(SLOTS):
+        for j in range(state.shape[1]):
+            state[k, j] = 0.0
+    limited = limits.shape[1] > 0
     if limited:
         clamp_joints(limits, angles)
         project_axes(axes, couplings, limits, held, angles)
@@ -134,7 +145,7 @@ def descend(
         kinematics(algebra, axes, couplings, ends, angles, turned, columns, pose, jacobian)
         distance, turn = measure(kind, weight, target, pose, jacobian, error)
         if iterations < trace_errors.shape[0]:
-            trace_angles[iterations] = angles
+            copy(angles, trace_angles[iterations])
             trace_errors[iterations, 0], trace_errors[iterations, 1] = distance, turn
         if distance < tolerance and turn < orientation_tolerance:
             return CONVERGED, iterations, distance, turn
@@ -161,7 +172,7 @@ def descend(
         iterations += 1
 
 
-@compiled
+@uncounted
 def solve_once(
     algebra: int,
     chain: Chain,
@@ -174,26 +185,39 @@ def solve_once(
     improvement: float,
     trace_angles: Array,
     trace_errors: Array,
+    work: Array,
 ) -> Outcome:
     """`descend`, with UNREACHABLE where the links prove it, and NOT_FINITE where target or start are not.
 
-    The traces are filled as by `descend`; of length 0, they are left alone.
+    The traces are filled as by `descend`; of length 0, they are left alone. `work` is what `room` asks for.
     """
     if not (all_finite(target) and all_finite(angles)):
         return NOT_FINITE, 0, np.nan, np.nan
-    near = pull_in(chain, target)
+    near, free = work[: target.shape[0]], work[LARGEST:]
+    pull_in(chain, target, near)
     status, iterations, distance, turn = descend(
-        algebra, chain, kind, near, stop, rule, settings, angles, improvement, trace_angles, trace_errors
+        algebra,
+        chain,
+        kind,
+        near,
+        stop,
+        rule,
+        settings,
+        angles,
+        improvement,
+        trace_angles,
+        trace_errors,
+        free,
     )
     if status != CONVERGED and unreachable(chain, target, stop[0]):
         status = UNREACHABLE
-        pose = np.empty((1, 7))
-        poses(algebra, chain, angles.reshape((1, angles.shape[0])), pose)
-        distance = length(target[0] - pose[0, 0], target[1] - pose[0, 1], target[2] - pose[0, 2])
+        distance = length(
+            target[0] - free[0], target[1] - free[1], target[2] - free[2]
+        )  # free begins with the pose
     return status, iterations, distance, turn
 
 
-@compiled
+@uncounted
 def solve_with_restarts(
     algebra: int,
     chain: Chain,
@@ -204,17 +228,23 @@ def solve_with_restarts(
     settings: Array,
     angles: Array,
     starts: Array,
+    work: Array,
 ) -> tuple[int, int, float, float, int]:
     """`solve_once`; where that gets stuck, from each row of `starts` in turn, all within one budget of updates.
 
     Leaves in `angles` the best of all ends, gone on with until it stagnates. The outcome counts the updates of all
-    attempts, and after it come the restarts.
+    attempts, and after it come the restarts. `work` is what `room` asks for.
     """
     tolerance, orientation_tolerance, weight, window, budget = stop
-    attempt, no_trace, restarts = angles.copy(), np.empty((0, 2)), 0
+    attempt, free, no_trace, restarts = (
+        work[: angles.shape[0]],
+        work[angles.shape[0] :],
+        work[:0].reshape((0, 2)),
+        0,
+    )
     improvement = IMPATIENCE if starts.shape[0] > 0 else IMPROVEMENT
     status, total, distance, turn = solve_once(
-        algebra, chain, kind, target, stop, rule, settings, angles, improvement, no_trace, no_trace
+        algebra, chain, kind, target, stop, rule, settings, angles, improvement, no_trace, no_trace, free
     )
     if starts.shape[0] == 0:
         return status, total, distance, turn, restarts
@@ -224,7 +254,7 @@ def solve_with_restarts(
         left = (tolerance, orientation_tolerance, weight, window, budget - total)
         outcome, iterations, reached, turned = solve_once(
             algebra, chain, kind, target, left, rule, settings, attempt,
-            IMPROVEMENT if last else IMPATIENCE, no_trace, no_trace,
+            IMPROVEMENT if last else IMPATIENCE, no_trace, no_trace, free,
         )  # fmt: skip
         total += iterations
         if outcome == CONVERGED or reached + weight * turned < distance + weight * turn:

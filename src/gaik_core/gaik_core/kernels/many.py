@@ -12,6 +12,7 @@ from gaik_core.kernels.descent import (
     STAGNATED,
     Stop,
     copy,
+    room,
     solve_once,
     solve_with_restarts,
 )
@@ -49,10 +50,11 @@ def solve_each(
 
     `counts` (m, 3) and `errors` (m, 2) tell how each ended.
     """
+    work = np.empty(room(chain[0].shape[0], angles.shape[1]))
     for k in range(left.shape[0]):
         i = left[k]
         status, iterations, distance, turn, restarts = solve_with_restarts(
-            algebra, chain, kind, targets[i], stop, rule, settings, angles[i], starts
+            algebra, chain, kind, targets[i], stop, rule, settings, angles[i], starts, work
         )
         counts[i, STATUS], counts[i, ITERATIONS], counts[i, RESTARTS] = status, iterations, restarts
         errors[i, DISTANCE], errors[i, TURN] = distance, turn
@@ -88,11 +90,13 @@ def solve_along(
     pieces of the straight way; where even the smallest jump, it is kept out of the result as STAGNATED.
     """
     no_trace, current, piece = np.empty((0, 2)), start.copy(), targets[:1].copy()[0]
+    work = np.empty(room(chain[0].shape[0], start.shape[0]))
     for i in range(targets.shape[0]):
         copy(current, angles[i])
         status, iterations, distance, turn = solve_once(
-            algebra, chain, kind, targets[i], stop, rule, settings, angles[i], IMPROVEMENT, no_trace, no_trace
-        )
+            algebra, chain, kind, targets[i], stop, rule, settings, angles[i], IMPROVEMENT, no_trace, no_trace,
+            work,
+        )  # fmt: skip
         halvings = 0
         while i > 0 and largest_step(angles[i], current) > bound and halvings < HALVINGS:
             halvings += 1
@@ -105,18 +109,9 @@ def solve_along(
                         targets[i, axis] - targets[i - 1, axis]
                     )
                 status, more, distance, turn = solve_once(
-                    algebra,
-                    chain,
-                    kind,
-                    piece,
-                    stop,
-                    rule,
-                    settings,
-                    angles[i],
-                    IMPROVEMENT,
-                    no_trace,
-                    no_trace,
-                )
+                    algebra, chain, kind, piece, stop, rule, settings, angles[i], IMPROVEMENT, no_trace, no_trace,
+                    work,
+                )  # fmt: skip
                 iterations += more
                 jumped = jumped or largest_step(angles[i], before) > bound
                 copy(angles[i], before)
