@@ -18,6 +18,7 @@ OURS = (
 PEERS = (
     ("peers.toolbox", "Toolbox"),
     ("peers.kdl", "Kdl"),
+    ("peers.kdl", "KdlOwnTypes"),
     ("peers.pinocchio_clik", "PinocchioClik"),
     ("peers.mujoco_dls", "MujocoDls"),
     ("peers.trac_ik", "TracIk"),

@@ -14,26 +14,24 @@ from scaling import Scaling
 HEAD = """# Benchmarks
 
 `make bench` writes this page. Everything runs in one process, in turn, round by round; a ratio is the median over the
-rounds of the times measured side by side. Each solver gets the same arm, targets, start and tolerance. Success is
-counted by gaik's forward kinematics of its answers, and "inside limits" by the robot's joint limits, whatever the
-solver itself reports. gaik is timed through its public functions with all their checks; a peer's targets are
-converted to its own types before the clock runs. A solver that has restarts may try {restarts} of them on the Panda;
-nobody has any on T1 and T3. The loops of Pinocchio, MuJoCo, mink and pink are those of their own examples with full
-steps, in Python.
+rounds of the times measured side by side. A turn that is shorter than 0.1 s is first rehearsed and then repeated to
+fill them, so that each is timed in a loop of its own. Each solver gets the same arm, targets, start and tolerance.
+Success is counted by gaik's forward kinematics of its answers, and "inside limits" by the robot's joint limits,
+whatever the solver itself reports.
+
+A solve goes from NumPy to NumPy: a target as an array, or a pose as the solver's documentation has it, and the joints
+as an array. gaik is timed so through its public functions with all their checks. Of the peers only PyKDL wants types of
+its own; a second row gives its time without the conversions, and counts for no aim. A solver that has restarts may try
+{restarts} of them on the Panda; nobody has any on T1 and T3. The loops of Pinocchio, MuJoCo, mink and pink are those of
+their own examples with full steps, in Python.
 
 - Machine: {machine}
 - Versions: {versions}
 - Rounds: {rounds}
 
-To run it again, with every peer:
-
-    python3 -m venv bench-venv && . bench-venv/bin/activate
-    pip install -e src/gaik_core -r benchmark/requirements.txt
-    make bench
-
-PyKDL is not on PyPI; on Debian and Ubuntu it is `apt install python3-pykdl`, built for numpy before 2, and is found
-from a virtual environment of the system's version of Python. A run that has it was made after
-`pip install numpy==1.26.4`: pip then warns that two packages ask for numpy 2, but all peers run.
+To run it again: `make bench`. It makes an environment of its own under `out/bench`, of every peer that pip can install
+there. PyKDL is not on PyPI; on Debian and Ubuntu it is `apt install python3-pykdl`, built for numpy before 2, and is
+found from an environment of the system's version of Python.
 """
 
 

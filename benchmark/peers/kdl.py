@@ -33,10 +33,10 @@ def _import() -> Any:
 kdl = _import()
 
 
-class Kdl(Solver):
-    """`ChainIkSolverPos_LMA`."""
+class KdlOwnTypes(Solver):
+    """`ChainIkSolverPos_LMA`, from a KDL frame and a KDL array to a KDL array."""
 
-    name = "PyKDL"
+    name = "PyKDL, own types"
     package = "PyKDL"
 
     def __init__(self, problem: Problem) -> None:
@@ -55,10 +55,7 @@ class Kdl(Solver):
         ]
 
     def start(self) -> Any:
-        start = kdl.JntArray(self.joints)
-        for joint, angle in enumerate(self.problem.axis_start):
-            start[joint] = angle
-        return start
+        return _to_kdl(self.problem.axis_start)
 
     def solve(self, target: Any, start: Any) -> Any:
         answer = kdl.JntArray(self.joints)
@@ -66,9 +63,57 @@ class Kdl(Solver):
         return answer
 
     def angles(self, answers: list[Any]) -> Array:
-        return self.problem.from_axes(
-            np.array([[answer[i] for i in range(self.joints)] for answer in answers])
-        )
+        return self.problem.from_axes(np.array([_from_kdl(answer) for answer in answers]))
+
+
+class Kdl(KdlOwnTypes):
+    """The same from NumPy to NumPy, as all others take their targets and give their answers."""
+
+    name = "PyKDL"
+
+    def __init__(self, problem: Problem) -> None:
+        super().__init__(problem)
+        turns = problem.orientations
+        self.frame = _position_frame if turns is None else _pose_frame
+        self.same_start = None if problem.warm else super().start()
+
+    def targets(self) -> list[Any]:
+        turns = self.problem.orientations
+        if turns is None:
+            return list(self.problem.targets)
+        return list(zip(self.problem.targets, turns, strict=True))
+
+    def start(self) -> Any:
+        return self.problem.axis_start
+
+    def solve(self, target: Any, start: Any) -> Any:
+        begin = _to_kdl(start) if self.same_start is None else self.same_start
+        answer = kdl.JntArray(self.joints)
+        self.solver.CartToJnt(begin, self.frame(target), answer)
+        return np.array(_from_kdl(answer))
+
+    def angles(self, answers: list[Any]) -> Array:
+        return self.problem.from_axes(np.array(answers))
+
+
+def _position_frame(position: Array) -> Any:
+    return kdl.Frame(kdl.Vector(*position.tolist()))
+
+
+def _pose_frame(pose: tuple[Array, Array]) -> Any:
+    position, (w, x, y, z) = pose[0], pose[1].tolist()
+    return kdl.Frame(kdl.Rotation.Quaternion(x, y, z, w), kdl.Vector(*position.tolist()))
+
+
+def _to_kdl(angles: Array) -> Any:
+    joints = kdl.JntArray(len(angles))
+    for joint, angle in enumerate(angles.tolist()):
+        joints[joint] = angle
+    return joints
+
+
+def _from_kdl(joints: Any) -> list[float]:
+    return [joints[i] for i in range(joints.rows())]
 
 
 def _chain(problem: Problem) -> Any:

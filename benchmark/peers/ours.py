@@ -17,7 +17,6 @@ class Ours(Solver):
     package = "gaik_core"
     algebra = "quaternion"
     rule: UpdateRule
-    max_iterations = 1000
 
     def __init__(self, problem: Problem) -> None:
         super().__init__(problem)
@@ -25,9 +24,9 @@ class Ours(Solver):
             "algebra": self.algebra,
             "rule": self.rule,
             "tolerance": problem.tolerance,
-            "max_iterations": self.max_iterations,
-            "orientation_tolerance": problem.orientation_tolerance,
         }
+        if problem.orientations is not None:
+            self.options["orientation_tolerance"] = problem.orientation_tolerance
         if problem.restarts:
             self.options["restarts"] = problem.restarts
 

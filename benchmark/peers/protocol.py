@@ -22,7 +22,7 @@ class NotSolvableError(Exception):
 class Solver(ABC):
     """One solver, set up for one problem.
 
-    Its targets and starts are converted to its own types before the clock runs; a peer is never charged for that.
+    It takes its targets and starts as NumPy arrays, and poses as its documentation has them, and answers with an array.
 
     Attributes:
         name: as the tables have it.
