@@ -145,7 +145,7 @@ def _panda(key: str, title: str, count: int, pose: bool) -> Problem:
         urdf=urdf,
         base="panda_link0",
         tip="panda_link8",
-        targets=positions,
+        targets=np.ascontiguousarray(positions),
         orientations=orientations if pose else None,
         start=PANDA_READY,
         tolerance=1e-3,

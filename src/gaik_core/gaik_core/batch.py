@@ -29,11 +29,12 @@ _STATUS = np.array([status.value for status in STATUS])
 
 @dataclass(frozen=True)
 class BatchProblem:
-    """What the solves of a batch have in common, and the targets (m, 3)."""
+    """What the solves of a batch have in common, the targets (m, 3) and the angles to start from (m, dof)."""
 
     algebra: int
     chain: Chain
     targets: Array
+    first: Array
     stop: Stop
     rule: UpdateRule
     starts: Array
@@ -48,26 +49,42 @@ class BatchProblem:
 
 @dataclass(frozen=True)
 class BatchResult:
-    """What the solves of a batch write: angles (m, dof), and counts and errors as in `gaik_core.kernels.many`."""
+    """What the solves of a batch write: angles (m, dof), and counts and errors as in `gaik_core.kernels.many`.
+
+    `status` (m,) says in words what the counts say; it takes the longest to write, and so is left to the threads.
+    """
 
     angles: Array
     counts: NDArray[np.int64]
     errors: Array
+    status: NDArray[np.str_]
 
     @classmethod
-    def of(cls, angles: Array) -> BatchResult:
-        """Room for as many solves as there are rows of angles."""
-        return cls(angles, np.zeros((len(angles), 3), dtype=np.int64), np.zeros((len(angles), 2)))
+    def of(cls, solves: int, dof: int) -> BatchResult:
+        """Room for so many solves."""
+        return cls(
+            np.empty((solves, dof)),
+            np.zeros((solves, 3), dtype=np.int64),
+            np.zeros((solves, 2)),
+            np.empty(solves, dtype=_STATUS.dtype),
+        )
+
+    def part(self, part: slice) -> BatchResult:
+        """A part of it, to be written by one thread."""
+        return BatchResult(self.angles[part], self.counts[part], self.errors[part], self.status[part])
+
+    def say(self) -> None:
+        """Write the words."""
+        np.take(_STATUS, self.counts[:, many.STATUS], out=self.status, mode="clip")
 
     def solutions(self) -> Solutions:
         """As the public functions return it."""
-        status = self.counts[:, many.STATUS]
         fields: dict[str, Any] = {
             "angles": self.angles,
             "error": self.errors[:, many.DISTANCE],
             "iterations": self.counts[:, many.ITERATIONS],
-            "converged": status == CONVERGED,
-            "status": _STATUS[status],
+            "converged": self.counts[:, many.STATUS] == CONVERGED,
+            "status": self.status,
             "orientation_error": self.errors[:, many.TURN],
             "restarts": self.counts[:, many.RESTARTS],
         }
@@ -79,7 +96,7 @@ def solve_in_parallel(problem: BatchProblem, result: BatchResult, workers: int |
     size = len(problem.targets)
     threads = max(1, min(workers or len(os.sched_getaffinity(0)), size // SHARE))
     if threads == 1:
-        solve_slice(problem, result, slice(0, size))
+        solve_slice(problem, result, slice(None))
         return
     edges = np.linspace(0, size, threads + 1).astype(int)
     slices = [slice(begin, end) for begin, end in pairwise(edges)]
@@ -90,9 +107,9 @@ def solve_in_parallel(problem: BatchProblem, result: BatchResult, workers: int |
 
 def solve_slice(problem: BatchProblem, result: BatchResult, part: slice) -> None:
     """Solve a part of a batch: in lanes where the problem fits them, and what they leave over one by one."""
-    targets, angles = problem.targets[part], result.angles[part]
-    counts, errors = result.counts[part], result.errors[part]
-    common = (problem.rule.settings, angles)
+    targets, result = problem.targets[part], result.part(part)
+    result.angles[:] = problem.first[part]
+    common = (problem.rule.settings, result.angles)
     left = np.arange(len(targets))
     if problem.fits_lanes:
         distances, iterations = np.zeros(len(targets)), np.zeros(len(targets), dtype=np.int64)
@@ -100,9 +117,10 @@ def solve_slice(problem: BatchProblem, result: BatchResult, part: slice) -> None
         solve_lanes(
             problem.algebra, problem.chain, targets, tolerance, budget, *common, distances, iterations
         )
-        counts[:, many.ITERATIONS], errors[:, many.DISTANCE] = iterations, distances
+        result.counts[:, many.ITERATIONS], result.errors[:, many.DISTANCE] = iterations, distances
         left = np.flatnonzero(iterations == LEFT_OVER)
     many.solve_each(
         problem.algebra, problem.chain, POSITION, targets, problem.stop, problem.rule.kernel, *common,
-        problem.starts, left, counts, errors,
+        problem.starts, left, result.counts, result.errors,
     )  # fmt: skip
+    result.say()

@@ -148,11 +148,12 @@ def solve_batch(
     if first.shape not in ((chain.dof,), (len(points), chain.dof)):
         raise ShapeError("start", first.shape, f"({chain.dof},) or ({len(points)}, {chain.dof})")
     finite("start", first)
-    result = BatchResult.of(np.broadcast_to(first, (len(points), chain.dof)).copy())
+    result = BatchResult.of(len(points), chain.dof)
     problem = BatchProblem(
         algebra_code(algebra),
         _packed(chain, limits),
         points,
+        np.broadcast_to(first, (len(points), chain.dof)),
         _stop(chain, POSITION, rule, tolerance, 1.0, None, max_iterations),
         rule,
         random_starts(chain, count("restarts", restarts), seed),
@@ -195,7 +196,7 @@ def solve_path(
     """
     points = rows("targets", targets, 3)
     first = finite_vector("start", chain.home if start is None else start, chain.dof)
-    result = BatchResult.of(np.empty((len(points), chain.dof)))
+    result = BatchResult.of(len(points), chain.dof)
     stop = _stop(chain, POSITION, rule, tolerance, 1.0, None, max_iterations)
     bound = positive("largest_step", largest_step)
     if len(points):
@@ -203,6 +204,7 @@ def solve_path(
             algebra_code(algebra), _packed(chain, limits), POSITION, points, stop, rule.kernel, rule.settings,
             first, bound, result.angles, result.counts, result.errors,
         )  # fmt: skip
+    result.say()
     return result.solutions()
 
 
