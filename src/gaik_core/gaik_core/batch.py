@@ -24,7 +24,7 @@ Array = NDArray[np.float64]
 SHARE = 4 * LANES
 """Fewer targets than this are not worth a thread."""
 
-_STATUS = np.array([status.value for status in STATUS])
+_STATUS = np.array(STATUS, dtype=object)
 
 
 @dataclass(frozen=True)
@@ -49,42 +49,30 @@ class BatchProblem:
 
 @dataclass(frozen=True)
 class BatchResult:
-    """What the solves of a batch write: angles (m, dof), and counts and errors as in `gaik_core.kernels.many`.
-
-    `status` (m,) says in words what the counts say; it takes the longest to write, and so is left to the threads.
-    """
+    """What the solves of a batch write: angles (m, dof), and counts and errors as in `gaik_core.kernels.many`."""
 
     angles: Array
     counts: NDArray[np.int64]
     errors: Array
-    status: NDArray[np.str_]
 
     @classmethod
     def of(cls, solves: int, dof: int) -> BatchResult:
         """Room for so many solves."""
-        return cls(
-            np.empty((solves, dof)),
-            np.zeros((solves, 3), dtype=np.int64),
-            np.zeros((solves, 2)),
-            np.empty(solves, dtype=_STATUS.dtype),
-        )
+        return cls(np.empty((solves, dof)), np.zeros((solves, 3), dtype=np.int64), np.zeros((solves, 2)))
 
     def part(self, part: slice) -> BatchResult:
         """A part of it, to be written by one thread."""
-        return BatchResult(self.angles[part], self.counts[part], self.errors[part], self.status[part])
-
-    def say(self) -> None:
-        """Write the words."""
-        np.take(_STATUS, self.counts[:, many.STATUS], out=self.status, mode="clip")
+        return BatchResult(self.angles[part], self.counts[part], self.errors[part])
 
     def solutions(self) -> Solutions:
         """As the public functions return it."""
+        status = self.counts[:, many.STATUS]
         fields: dict[str, Any] = {
             "angles": self.angles,
             "error": self.errors[:, many.DISTANCE],
             "iterations": self.counts[:, many.ITERATIONS],
-            "converged": self.counts[:, many.STATUS] == CONVERGED,
-            "status": self.status,
+            "converged": status == CONVERGED,
+            "status": _STATUS[status],
             "orientation_error": self.errors[:, many.TURN],
             "restarts": self.counts[:, many.RESTARTS],
         }
@@ -123,4 +111,3 @@ def solve_slice(problem: BatchProblem, result: BatchResult, part: slice) -> None
         problem.algebra, problem.chain, POSITION, targets, problem.stop, problem.rule.kernel, *common,
         problem.starts, left, result.counts, result.errors,
     )  # fmt: skip
-    result.say()

@@ -74,6 +74,6 @@ class Solutions(Solution):
         error: Array  # type: ignore[assignment]
         iterations: NDArray[np.int64]  # type: ignore[assignment]
         converged: NDArray[np.bool_]  # type: ignore[assignment]
-        status: NDArray[np.str_]  # type: ignore[assignment]
+        status: NDArray[np.object_]  # type: ignore[assignment]  # of Status
         orientation_error: Array  # type: ignore[assignment]
         restarts: NDArray[np.int64]  # type: ignore[assignment]

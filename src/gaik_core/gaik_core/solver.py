@@ -204,7 +204,6 @@ def solve_path(
             algebra_code(algebra), _packed(chain, limits), POSITION, points, stop, rule.kernel, rule.settings,
             first, bound, result.angles, result.counts, result.errors,
         )  # fmt: skip
-    result.say()
     return result.solutions()
 
 
