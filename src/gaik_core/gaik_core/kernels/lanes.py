@@ -255,7 +255,7 @@ def solve_lanes(
     theta, turned, tip = np.zeros((joints, LANES)), np.zeros((n, LANES)), np.zeros((3, LANES))
     columns, state, jacobian = np.zeros((n, 6, LANES)), np.zeros((8, LANES)), np.zeros((joints, 3, LANES))
     wanted, error, normal = np.zeros((3, LANES)), np.zeros((3, LANES)), np.zeros((6, LANES))
-    task, made = np.full(LANES, -1), np.zeros(LANES, np.int64)
+    task, made, squares = np.full(LANES, -1), np.zeros(LANES, np.int64), np.zeros(LANES)
     patience, following, active = min(PATIENCE, max_iterations), 0, 0
     for lane in range(min(LANES, targets.shape[0])):
         take_up(following, lane, targets, angles, task, made, theta, wanted)
@@ -269,20 +269,24 @@ def solve_lanes(
         else:
             by_screw_rotors(axes, ends, turned, tip, columns, state)
         joint_columns(couplings, columns, jacobian)
-        for k in range(3):
-            for lane in range(LANES):
-                error[k, lane] = wanted[k, lane] - tip[k, lane]
         for lane in range(LANES):
-            if task[lane] < 0:
+            x, y, z = (
+                wanted[0, lane] - tip[0, lane],
+                wanted[1, lane] - tip[1, lane],
+                wanted[2, lane] - tip[2, lane],
+            )
+            error[0, lane], error[1, lane], error[2, lane] = x, y, z
+            squares[lane] = x * x + y * y + z * z
+            made[lane] += 1
+        for lane in range(LANES):
+            reached = squares[lane] < tolerance * tolerance
+            if task[lane] < 0 or not (reached or made[lane] > patience):
                 continue
-            distance = math.sqrt(error[0, lane] ** 2 + error[1, lane] ** 2 + error[2, lane] ** 2)
-            if distance >= tolerance and made[lane] < patience:
-                made[lane] += 1
-                continue
-            for j in range(joints):
-                angles[task[lane], j] = theta[j, lane] if distance < tolerance else angles[task[lane], j]
-            errors[task[lane]] = distance
-            iterations[task[lane]] = made[lane] if distance < tolerance else LEFT_OVER
+            if reached:
+                for j in range(joints):
+                    angles[task[lane], j] = theta[j, lane]
+            errors[task[lane]] = math.sqrt(squares[lane])
+            iterations[task[lane]] = made[lane] - 1 if reached else LEFT_OVER
             for k in range(3):
                 error[k, lane] = 0.0  # so that this round's update leaves what the lane now takes up as it is
             task[lane] = -1
