@@ -38,7 +38,7 @@ def main() -> int:
     if "T4" in arguments.tasks:
         problem = problems.panda_batch(arguments.batch)
         chosen = [peer for peer in peers.classes if peer.name in BATCH_PEERS]
-        results = measure_batch(problem, chosen, max(1, arguments.rounds // 2))
+        results = measure_batch(problem, chosen, arguments.rounds)
         best = next(r.name for r in results if r.package == "gaik_core")
         tasks.append(Task("T4", problem.title, results, reference=best))
     if "T5" in arguments.tasks:

@@ -88,9 +88,11 @@ def solve_in_parallel(problem: BatchProblem, result: BatchResult, workers: int |
         return
     edges = np.linspace(0, size, threads + 1).astype(int)
     slices = [slice(begin, end) for begin, end in pairwise(edges)]
-    with ThreadPoolExecutor(threads) as pool:
-        for done in [pool.submit(solve_slice, problem, result, part) for part in slices]:
-            done.result()
+    with ThreadPoolExecutor(threads - 1) as pool:
+        others = [pool.submit(solve_slice, problem, result, part) for part in slices[1:]]
+        solve_slice(problem, result, slices[0])
+        for other in others:
+            other.result()
 
 
 def solve_slice(problem: BatchProblem, result: BatchResult, part: slice) -> None:
@@ -100,12 +102,11 @@ def solve_slice(problem: BatchProblem, result: BatchResult, part: slice) -> None
     common = (problem.rule.settings, result.angles)
     left = np.arange(len(targets))
     if problem.fits_lanes:
-        distances, iterations = np.zeros(len(targets)), np.zeros(len(targets), dtype=np.int64)
+        iterations, distances = result.counts[:, many.ITERATIONS], result.errors[:, many.DISTANCE]
         tolerance, budget = problem.stop[0], problem.stop[-1]
         solve_lanes(
             problem.algebra, problem.chain, targets, tolerance, budget, *common, distances, iterations
         )
-        result.counts[:, many.ITERATIONS], result.errors[:, many.DISTANCE] = iterations, distances
         left = np.flatnonzero(iterations == LEFT_OVER)
     many.solve_each(
         problem.algebra, problem.chain, POSITION, targets, problem.stop, problem.rule.kernel, *common,
