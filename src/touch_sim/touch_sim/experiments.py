@@ -40,6 +40,8 @@ ALGEBRAS = ("quaternion", "conformal")
 
 AGREE = 20.0  # %: by no more may the nodes' error differ from that of the loop without ROS
 STALL = 0.01  # s: for so long a loop stands still only where something else has the processor
+DISTURBED = 0.03  # s: runs whose loops stood still for longer are of the machine, and played again
+TRIES = 3
 FILTERS = (0.0, 0.01, 0.05)  # s, of the derivative
 DELAYS = (0, 1, 2, 3)  # steps of 1 ms
 TWIN = 1.0 / TIME_CONSTANT  # 1/s, K/τ of the twin, whose K is 1 rad/(N·m)
@@ -50,7 +52,7 @@ TWIN = 1.0 / TIME_CONSTANT  # 1/s, K/τ of the twin, whose K is 1 rad/(N·m)
 
 @cache
 def follow_with_nodes(algebra: str, feed_forward: bool = False, period: float = PERIOD) -> Results:
-    """A lap of each path with the real nodes. GaikError: there is no ROS here."""
+    """A lap of each path with the real nodes, the least disturbed of a few tries. GaikError: there is no ROS here."""
     try:
         from touch_sim.isolation import follow_isolated
         from touch_sim.suite import SuiteOptions
@@ -60,7 +62,11 @@ def follow_with_nodes(algebra: str, feed_forward: bool = False, period: float = 
         name = (missing.name or "").split(".")[0]
         command = f"pip install {INSTALL.get(name, name)}"
         raise GaikError(f"its nodes need the Python module {name}; install it with: {command}") from None
-    return follow_isolated(SuiteOptions(algebra=algebra, feed_forward=feed_forward, period=period), PATHS)
+    options = SuiteOptions(algebra=algebra, feed_forward=feed_forward, period=period)
+    tries = [follow_isolated(options, PATHS)]
+    while longest_gap(tries[-1].runs) > DISTURBED and len(tries) < TRIES:
+        tries.append(follow_isolated(options, PATHS))
+    return min(tries, key=lambda results: longest_gap(results.runs))
 
 
 @cache
@@ -229,8 +235,8 @@ def draw_tip(nodes: Runs, without: Runs) -> Figure:
             error = in_lap(run, Series(tip.time, 1e3 * tip_distances(run)))
             panel.plot(error.time, error.values, color=colour, linewidth=1.0, label=name)
         panel.set(xlabel="time [s]", title=f"{runs[0].name}: error over the lap")
-        panel.set_ylim(bottom=0.0)
         panel.legend()
+    panels[0].set_ylim(bottom=0.0)  # of both, when both are drawn
     panels[0].set_ylabel("error [mm]")
     return figure
 
@@ -328,7 +334,8 @@ FIG21 = Experiment(
     "The Touch follows a circle and a lemniscate under the PID controller: the tip",
     "Circle of radius 50 mm tilted by 30 degrees and lemniscate of half width 80 mm, 6.3 s a lap, setpoints at 100 Hz, "
     "controller and twin at 1000 Hz, gains 3.1, 0.01, 0.3. The paper names neither paths nor errors. The nodes are the "
-    "demo's, on real ROS 2 topics; the same loop without ROS calls what the nodes call, with no delay between. The "
+    "demo's, on real ROS 2 topics; the same loop without ROS calls what the nodes call, with no delay between. Of "
+    "runs in which a loop stood still for over 30 ms, as the machine did other work, the calmest of three counts. The "
     "error is the distance from the measured tip to the path's point at the same time; nearly all of it is the lag "
     "τ/(3.1 K) = 16 ms of a proportional loop behind what moves. *Iterates* are the joints of the loop without ROS at "
     "each of its steps.",
