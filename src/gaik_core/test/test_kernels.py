@@ -43,6 +43,36 @@ def test_plain_python_gives_the_same_numbers():
         assert one == pytest.approx(other, rel=1e-9, abs=1e-12)
 
 
+MANY = """
+import numpy as np
+from gaik_core import KinematicChain, LevenbergMarquardt, solve, solve_batch, solve_path
+rule, draw = LevenbergMarquardt(), np.random.default_rng(0)
+for robot in ("touch_device", "arm5"):
+    chain = KinematicChain.load(robot)
+    targets = chain.forward(draw.uniform(-0.5, 0.5, (200, chain.dof)) + chain.home)
+    def all_ends():
+        return np.concatenate([
+            [solve(chain, t, rule=rule, restarts=3).angles for t in targets],
+            [solve(chain, 9.0 * t, rule=rule, restarts=3, max_iterations=50).angles for t in targets],
+            [solve(chain, t, rule=rule, trace=True).angles for t in targets],
+            solve_path(chain, targets, rule=rule).angles, solve_batch(chain, targets, rule=rule, restarts=3).angles])
+    first = all_ends()
+    for _ in range(20):
+        assert (all_ends() == first).all()
+"""
+
+
+def test_thousands_of_solves_leave_memory_whole():
+    """Kernels that count no references would free what they do not own: the allocator then ends the process."""
+    done = subprocess.run(
+        [sys.executable, "-c", MANY],
+        env={**os.environ, "MALLOC_PERTURB_": "165"},
+        capture_output=True,
+        text=True,
+    )
+    assert done.returncode == 0, done.stderr
+
+
 def test_without_numba_it_warns_once_and_works():
     code = f"import sys; sys.modules['numba'] = None\n{SOLVES}"
     done = subprocess.run(
