@@ -83,7 +83,7 @@ $(VENV)/ready: requirements.txt constraints.txt $(DESCRIBED)
 	@test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
 	@$(INSTALL) --requirement requirements.txt
 	@$(INSTALL) --use-pep517 --no-build-isolation --no-deps $(addprefix --editable ,$(PACKAGES))
-	@echo "Compiling the kernels: about 20 s, once."
+	@echo "Compiling the kernels: about 40 s, once."
 	@$(BIN)/python -m gaik_core.kernels
 	@touch $@
 

@@ -37,15 +37,20 @@ def pack(joints: Sequence[Joint], origin: Array, orientation: Array) -> Chain:
         np.array([[joint.lower for joint in active], [joint.upper for joint in active]]),
         np.array(held, dtype=float).reshape(-1, 3),
     )
-    for array in packed:
-        array.flags.writeable = False
-    return packed
+    return _read_only(packed)
 
 
 def without_limits(packed: Chain) -> Chain:
     """The same chain with no limit to hold."""
     axes, coupled, ends, _, _ = packed
-    return axes, coupled, ends, np.empty((2, 0)), np.empty((0, 3))
+    return _read_only((axes, coupled, ends, np.empty((2, 0)), np.empty((0, 3))))
+
+
+def _read_only(packed: Chain) -> Chain:
+    """The same arrays, of one type for the compiler, whether there are limits or not."""
+    for array in packed:
+        array.flags.writeable = False
+    return packed
 
 
 def couplings(joints: Sequence[Joint], names: Sequence[str]) -> Array:

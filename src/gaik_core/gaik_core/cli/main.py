@@ -9,7 +9,9 @@ import os
 import sys
 from argparse import ArgumentParser
 from collections.abc import Sequence
+from contextlib import suppress
 from importlib.metadata import EntryPoint, entry_points
+from typing import NoReturn
 
 from gaik_core import __version__
 from gaik_core.cli.command import GROUP, Command
@@ -27,6 +29,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     try:
         return run(given)
     except KeyboardInterrupt:
+        if arguments is None:
+            leave_at_once()
         return INTERRUPTED
     except BrokenPipeError:  # the reader has seen enough, as `head` does
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
@@ -37,6 +41,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except OSError as error:
         complain(f"gaik: {error.filename or 'input or output'}: {error.strerror or error}")
         return 2
+
+
+def leave_at_once() -> NoReturn:
+    """End the process without the interpreter's clean-up: a compilation may have been interrupted halfway."""
+    with suppress(OSError):
+        sys.stdout.flush()
+        sys.stderr.flush()
+    os._exit(INTERRUPTED)
 
 
 def run(given: Sequence[str]) -> int:
