@@ -18,7 +18,10 @@ from gaik_ros.joint_control import Mode
 
 STALL = 0.2  # s
 LEAD_IN = 0.1  # s of the recording before it
-WATCHED = 1.0  # s after a node's end
+WATCHED, ENOUGH = (
+    1.0,
+    100,
+)  # s, and messages, after a node's end: a killed reader may hold up its writers for a second
 
 DEVICE, CONTROLLER, IK, TRAJECTORY = "touch_sim", "pid_controller", "ik_node", "trajectory_publisher"
 CONTROL = "pid_controller: control"
@@ -66,6 +69,8 @@ def _end(node: str, number: signal.Signals, verb: str) -> Fault:
             mark, ended = stage.mark(), time.monotonic()
             code, errors = processes.end(node, number)
             stage.sleep(WATCHED)
+            told = "joint_command" if node == DEVICE else "joint_states"
+            stage.wait(lambda: stage.since(mark).count(told) > ENOUGH, f"{told} go on")
             checks = _consequence(stage, node, mark, ended)
             mark = stage.mark()
             processes.start(node)
