@@ -245,7 +245,7 @@ def _raise_not_finite(target: Array, start: Array) -> None:
     finite("start", start)
 
 
-@lru_cache(maxsize=256)
+@lru_cache(maxsize=256, typed=True)  # typed: 5 is a number of updates, 5.0 is not
 def _packed_problem(
     chain: KinematicChain,
     kind: int,

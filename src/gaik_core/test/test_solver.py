@@ -326,3 +326,20 @@ class TestBadArguments:
     def test_zero_iterations_are_allowed(self):
         end = solve(TOUCH, [0.05, 0.05, 0.0], max_iterations=0)
         assert end.iterations == 0 and end.status == Status.ITERATION_LIMIT
+
+
+@pytest.mark.parametrize("trace", [False, True])
+@pytest.mark.parametrize(
+    ("good", "bad"),
+    [({"max_iterations": 7}, {"max_iterations": 7.0}), ({"max_iterations": 1}, {"max_iterations": True})],
+)
+def test_what_is_no_count_is_refused_after_an_equal_count_was_taken(good, bad, trace):
+    """Checked arguments are kept: what only compares equal to them must be checked itself."""
+    target = TOUCH.forward(TOUCH.home)
+    solve(TOUCH, target, **good, trace=trace)
+    with pytest.raises(GaikError, match="max_iterations"):
+        solve(TOUCH, target, **bad, trace=trace)
+
+
+def test_a_tolerance_that_has_no_hash_is_taken():
+    assert solve(TOUCH, TOUCH.forward(TOUCH.home), tolerance=np.array(1e-4)).converged

@@ -16,6 +16,8 @@ from gaik_ros.reference_page import table
 
 PACKAGE = Path(__file__).parents[1]
 NODES = ("ik_node", "pid_controller", "trajectory_publisher")
+OWN_DRIVER = ("--ros-args", "-p", "driver:=own")  # the others bring their own messages
+QUIET = [*((node, ()) for node in (*NODES, "path_markers")), ("touch_adapter", OWN_DRIVER)]
 PATIENCE = 60.0
 
 
@@ -41,9 +43,9 @@ def end(process):
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM], ids=["SIGINT", "SIGTERM"])
-@pytest.mark.parametrize("node", NODES)
-def test_a_signal_ends_a_node_quietly(up, node, number):
-    process = start(node)
+@pytest.mark.parametrize(("node", "arguments"), QUIET, ids=[node for node, _ in QUIET])
+def test_a_signal_ends_a_node_quietly(up, node, arguments, number):
+    process = start(node, *arguments)
     up(node)
     process.send_signal(number)
     assert end(process) == (0, "", "")

@@ -1,13 +1,7 @@
 """The markers of a path that is sent and of a device that is played."""
 
-import signal
-import subprocess
-import sys
-from pathlib import Path
-
 import numpy as np
 import pytest
-from rclpy.node import Node
 from ros_bench import Bench, overrides, wait_until
 from visualization_msgs.msg import Marker, MarkerArray
 
@@ -78,22 +72,3 @@ def test_a_trail_forgets_what_is_old_and_does_not_repeat_what_stands_still():
     for x in (0.0, 1.0, 1.0, 2.0, np.inf, 3.0):
         trail.add(np.array([x, 0.0, 0.0]))
     assert [p.x for p in trail.points] == [1.0, 2.0, 3.0]
-
-
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM], ids=["SIGINT", "SIGTERM"])
-def test_a_signal_ends_the_program_quietly(context, number):
-    script = Path(__file__).parents[1] / "scripts" / "path_markers"
-    watcher = Node("watcher", context=context)
-    process = subprocess.Popen(
-        [sys.executable, str(script), "--ros-args", "-r", f"__node:=stopped_by_{number.name}"],
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-    )
-    try:
-        wait_until(lambda: f"stopped_by_{number.name}" in watcher.get_node_names(), "it did not come up")
-        process.send_signal(number)
-        assert (*process.communicate(timeout=60), process.returncode) == ("", "", 0)
-    finally:
-        process.kill()
-        watcher.destroy_node()

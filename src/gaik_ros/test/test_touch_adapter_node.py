@@ -1,10 +1,6 @@
 """The adapter between the real nodes and drivers that are played as the known ones are."""
 
-import signal
-import subprocess
-import sys
 import time
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -233,30 +229,3 @@ def test_the_names_that_a_driver_uses_are_parameters(context, start):
 def test_a_driver_whose_messages_are_not_installed_is_refused_in_one_line(context):
     with pytest.raises(ValueError, match=r"omni_msgs/msg/OmniFeedback.*is omni_msgs installed"):
         adapter(context, "geomagic_touch_ros2")
-
-
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM], ids=["SIGINT", "SIGTERM"])
-def test_a_signal_ends_the_program_quietly(context, number):
-    script = Path(__file__).parents[1] / "scripts" / "touch_adapter"
-    watcher = Node("watcher", context=context)
-    process = subprocess.Popen(
-        [
-            sys.executable,
-            str(script),
-            "--ros-args",
-            "-p",
-            "driver:=own",
-            "-r",
-            f"__node:=stopped_by_{number.name}",
-        ],
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-    )
-    try:
-        wait_until(lambda: f"stopped_by_{number.name}" in watcher.get_node_names(), "it did not come up")
-        process.send_signal(number)
-        assert (*process.communicate(timeout=60), process.returncode) == ("", "", 0)
-    finally:
-        process.kill()
-        watcher.destroy_node()

@@ -26,3 +26,10 @@ class Command:
     examples: tuple[str, ...]
     configure: Callable[[ArgumentParser], None]
     run: Callable[[Namespace], int]
+
+
+def robot_names(**_: object) -> list[str]:
+    """What the shell may complete a robot to: argcomplete's completer of an argument."""
+    from gaik_core import KinematicChain
+
+    return KinematicChain.names()

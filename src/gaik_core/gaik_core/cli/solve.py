@@ -18,7 +18,7 @@ from gaik_core import (
     rule_by_name,
     solve,
 )
-from gaik_core.cli.command import Command
+from gaik_core.cli.command import Command, robot_names
 from gaik_core.cli.terminal import GREEN, RED, coloured, print_json, print_table
 from gaik_core.errors import GaikError
 from gaik_core.targets import Target
@@ -29,7 +29,7 @@ def configure(parser: ArgumentParser) -> None:
     robot: Any = parser.add_argument(
         "robot", help="a robot's name (see gaik robots) or the path of a robot file"
     )
-    robot.completer = lambda **_: KinematicChain.names()
+    robot.completer = robot_names
     for axis in "xyz":
         parser.add_argument(
             axis, type=float, metavar=axis.upper(), help=f"where the tip should be, along {axis} (m)"

@@ -7,7 +7,7 @@ from argparse import ArgumentParser, Namespace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from gaik_core.cli.command import Command
+from gaik_core.cli.command import Command, robot_names
 from gaik_core.cli.terminal import BOLD, coloured, complain, print_json, print_table, progress
 from gaik_core.errors import GaikError
 
@@ -21,7 +21,7 @@ def configure(parser: ArgumentParser) -> None:
     robot: Any = parser.add_argument(
         "robot", help="a robot's name (see gaik robots), a robot file, or a URDF (ends in .urdf)"
     )
-    robot.completer = _robots
+    robot.completer = robot_names
     parser.add_argument("--base", metavar="LINK", help="of a URDF: where the arm begins (default: its root)")
     parser.add_argument("--tip", metavar="LINK", help="of a URDF: where it ends (default: its only leaf)")
     parser.add_argument(
@@ -56,12 +56,6 @@ def configure(parser: ArgumentParser) -> None:
     )
     parser.add_argument("--no-picture", action="store_true", help="the numbers alone")
     parser.add_argument("--json", action="store_true", help="print JSON")
-
-
-def _robots(**_: object) -> list[str]:
-    from gaik_core import KinematicChain
-
-    return KinematicChain.names()
 
 
 def run(arguments: Namespace) -> int:

@@ -128,7 +128,7 @@ def descend(
     tolerance, orientation_tolerance, weight, window, max_iterations = stop
     axes, couplings, ends, limits, held = chain
     n, joints, rows = axes.shape[0], angles.shape[0], task_rows(kind)
-    pose, error, free = work[:7], work[POSE_SIZE : POSE_SIZE + rows], work[2 * POSE_SIZE :]
+    pose, error, free = work[:POSE_SIZE], work[POSE_SIZE : POSE_SIZE + rows], work[2 * POSE_SIZE :]
     turned, columns, free = free[:n], free[n : 7 * n].reshape((n, 6)), free[7 * n :]
     jacobian, free = free[: rows * joints].reshape((rows, joints)), free[rows * joints :]
     previous, normal, free = free[:joints], free[joints : 2 * joints], free[2 * joints :]
@@ -196,24 +196,11 @@ def solve_once(
     near, free = work[: target.shape[0]], work[LARGEST:]
     pull_in(chain, target, near)
     status, iterations, distance, turn = descend(
-        algebra,
-        chain,
-        kind,
-        near,
-        stop,
-        rule,
-        settings,
-        angles,
-        improvement,
-        trace_angles,
-        trace_errors,
-        free,
-    )
+        algebra, chain, kind, near, stop, rule, settings, angles, improvement, trace_angles, trace_errors, free,
+    )  # fmt: skip
     if status != CONVERGED and unreachable(chain, target, stop[0]):
-        status = UNREACHABLE
-        distance = length(
-            target[0] - free[0], target[1] - free[1], target[2] - free[2]
-        )  # free begins with the pose
+        status, tip = UNREACHABLE, free[:3]  # the descent has left its pose at the front
+        distance = length(target[0] - tip[0], target[1] - tip[1], target[2] - tip[2])
     return status, iterations, distance, turn
 
 
@@ -236,12 +223,8 @@ def solve_with_restarts(
     attempts, and after it come the restarts. `work` is what `room` asks for.
     """
     tolerance, orientation_tolerance, weight, window, budget = stop
-    attempt, free, no_trace, restarts = (
-        work[: angles.shape[0]],
-        work[angles.shape[0] :],
-        work[:0].reshape((0, 2)),
-        0,
-    )
+    attempt, free = work[: angles.shape[0]], work[angles.shape[0] :]
+    no_trace, restarts = work[:0].reshape((0, 2)), 0
     improvement = IMPATIENCE if starts.shape[0] > 0 else IMPROVEMENT
     status, total, distance, turn = solve_once(
         algebra, chain, kind, target, stop, rule, settings, angles, improvement, no_trace, no_trace, free

@@ -61,19 +61,8 @@ def _solve_once(
 ) -> Outcome:
     algebra, chain, kind, stop, rule, settings = unpack_problem(packed)
     return solve_once(
-        algebra,
-        chain,
-        kind,
-        target,
-        stop,
-        rule,
-        settings,
-        angles,
-        IMPROVEMENT,
-        trace_angles,
-        trace_errors,
-        work,
-    )
+        algebra, chain, kind, target, stop, rule, settings, angles, IMPROVEMENT, trace_angles, trace_errors, work,
+    )  # fmt: skip
 
 
 @uncounted

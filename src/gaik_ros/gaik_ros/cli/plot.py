@@ -6,7 +6,7 @@ from argparse import ArgumentParser, Namespace
 from pathlib import Path
 from typing import Any
 
-from gaik_core.cli.command import Command
+from gaik_core.cli.command import Command, robot_names
 
 MOST_RUNS = 6  # columns of a figure
 
@@ -39,13 +39,7 @@ def add_reading(parser: ArgumentParser) -> None:
         default="touch_device",
         help="computes the tip where none was recorded (default: %(default)s)",
     )
-    robot.completer = _robots
-
-
-def _robots(**_: object) -> list[str]:
-    from gaik_core import KinematicChain
-
-    return KinematicChain.names()
+    robot.completer = robot_names
 
 
 def run(arguments: Namespace) -> int:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import time
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -17,9 +15,7 @@ Array = NDArray[np.float64]
 LATE = 1.0  # s a busy machine may add to any time that is promised; the table has what was measured
 ON_COURSE = 0.1  # rad: an arm that follows is a tenth of that behind, one that does not several times as much
 FRESH = 0.3  # s
-FOLLOWS = (
-    1.5  # s: an arm that stands still is not on course for that long while its reference goes to and fro
-)
+FOLLOWS = 1.5  # s: so long no arm that stands still is near a reference that goes to and fro
 LEVELS = {WARN: "WARN", ERROR: "ERROR"}
 STILL = 4e-3  # rad: an arm that is held moves less
 
@@ -38,16 +34,8 @@ def follows(stage: Stage, mark: dict[str, int] | None = None) -> Check:
 
     How far it was behind since `mark` is told, not judged: it depends on how busy the machine is.
     """
-    began = lost = time.monotonic()
-
-    def lasting() -> bool:
-        nonlocal lost
-        if not _follows(stage):
-            lost = time.monotonic()
-        return time.monotonic() - lost > FOLLOWS
-
-    stage.wait(lasting, "the arm follows")
-    measured = f"after {lost - began:.2f} s" if lost > began else "all the time"
+    taken = stage.wait_lasting(lambda: _follows(stage), FOLLOWS, "the arm follows")
+    measured = f"after {taken:.2f} s" if taken > 0.0 else "all the time"
     if mark is not None and (behind := lags(stage.since(mark), stage.names)).size:
         usual, most = 1e3 * np.percentile(behind, 90.0), 1e3 * behind.max()
         measured += f", {usual:.0f} mrad behind for 90 % of it, {most:.0f} at most"

@@ -18,10 +18,8 @@ from gaik_ros.joint_control import Mode
 
 STALL = 0.2  # s
 LEAD_IN = 0.1  # s of the recording before it
-WATCHED, ENOUGH = (
-    1.0,
-    100,
-)  # s, and messages, after a node's end: a killed reader may hold up its writers for a second
+WATCHED = 1.0  # s after a node's end
+ENOUGH = 100  # messages after it: a killed reader may hold up its writers for a while
 
 DEVICE, CONTROLLER, IK, TRAJECTORY = "touch_sim", "pid_controller", "ik_node", "trajectory_publisher"
 CONTROL = "pid_controller: control"

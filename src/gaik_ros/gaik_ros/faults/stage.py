@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from typing import Any
 
@@ -123,6 +123,19 @@ class Stage:
             raise NotSeenError(what)
         return time.monotonic() - began
 
+    def wait_lasting(self, condition: Callable[[], bool], seconds: float, what: str) -> float:
+        """Wait until `condition` has held for `seconds` on end; the time in s until it began to, 0 if at once."""
+        began = failed = time.monotonic()
+
+        def lasting() -> bool:
+            nonlocal failed
+            if not condition():
+                failed = time.monotonic()
+            return time.monotonic() - failed > seconds
+
+        self.wait(lasting, what)
+        return failed - began
+
     def sleep(self, seconds: float) -> None:
         """Let time pass."""
         time.sleep(seconds)
@@ -148,15 +161,7 @@ class Stage:
 
     def rest(self) -> None:
         """Wait until the arm is at rest, and not only for the moment in which it turns round."""
-        moved = time.monotonic()
-
-        def lasting() -> bool:
-            nonlocal moved
-            if not self._at_rest():
-                moved = time.monotonic()
-            return time.monotonic() - moved > RESTS
-
-        self.wait(lasting, "the arm comes to rest")
+        self.wait_lasting(self._at_rest, RESTS, "the arm comes to rest")
 
     def _at_rest(self) -> bool:
         """Whether the reference stands still and the device is there."""
