@@ -14,7 +14,8 @@ from numpy.typing import NDArray
 from gaik_core.kernels import many
 from gaik_core.kernels.descent import CONVERGED, Stop
 from gaik_core.kernels.kinematics import Chain
-from gaik_core.kernels.lanes import LANES, LEFT_OVER, solve_lanes
+from gaik_core.kernels.lane_kinematics import LANES
+from gaik_core.kernels.lanes import LEFT_OVER, solve_lanes
 from gaik_core.kernels.task import POSITION
 from gaik_core.solution import STATUS, Solutions
 from gaik_core.update_rules import LevenbergMarquardt, UpdateRule
@@ -100,7 +101,6 @@ def solve_slice(problem: BatchProblem, result: BatchResult, part: slice) -> None
     targets, result = problem.targets[part], result.part(part)
     result.angles[:] = problem.first[part]
     common = (problem.rule.settings, result.angles)
-    left = np.arange(len(targets))
     if problem.fits_lanes:
         iterations, distances = result.counts[:, many.ITERATIONS], result.errors[:, many.DISTANCE]
         tolerance, budget = problem.stop[0], problem.stop[-1]
@@ -108,6 +108,8 @@ def solve_slice(problem: BatchProblem, result: BatchResult, part: slice) -> None
             problem.algebra, problem.chain, targets, tolerance, budget, *common, distances, iterations
         )
         left = np.flatnonzero(iterations == LEFT_OVER)
+    else:
+        left = np.arange(len(targets))
     many.solve_each(
         problem.algebra, problem.chain, POSITION, targets, problem.stop, problem.rule.kernel, *common,
         problem.starts, left, result.counts, result.errors,
