@@ -53,6 +53,7 @@ def _ways() -> list[tuple[str, dict[str, Any]]]:
         return [("gaik solve_batch", {})]
     return [
         ("gaik solve_batch, 1 core", {"workers": 1}),
+        ("gaik solve_batch, 1 core, conformal", {"workers": 1, "algebra": "conformal"}),
         (f"gaik solve_batch, {cores} cores", {"workers": cores}),
     ]
 
