@@ -21,7 +21,8 @@ from gaik_ros.faults.rig import rig
 from touch_sim.suite import SuiteOptions
 
 NIGHTLY = os.environ.get("GAIK_NIGHTLY") == "1"
-PAGE = Path(__file__).parents[1] / "docs" / "faults.md"
+ROOT = Path(__file__).parents[1]
+PAGE = ROOT / "docs" / "faults.md"
 PATIENCE = 240.0  # s
 
 
@@ -36,8 +37,17 @@ def parameter(fault):
 RATE = ["-p", "rate:=250.0"]
 
 
+@pytest.fixture(scope="module", autouse=True)
+def no_shared_memory():
+    """Processes are stopped and killed here, which Fast DDS's shared memory may not survive (docs/faults.md)."""
+    with pytest.MonkeyPatch.context() as environment:
+        environment.setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "SYSTEM_DEFAULT")
+        environment.setenv("FASTRTPS_DEFAULT_PROFILES_FILE", str(ROOT / "config" / "fastdds_udp.xml"))
+        yield
+
+
 @pytest.fixture(scope="module")
-def ours():
+def ours(no_shared_memory):
     with rig("faults", start_suite=True, arguments={"touch_sim": RATE, "pid_controller": RATE}) as ready:
         yield ready
 

@@ -18,7 +18,7 @@ setup(
         ("share/ament_index/resource_index/packages", [f"resource/{package_name}"]),
         (f"share/{package_name}", ["package.xml"]),
         (f"share/{package_name}/launch", files("launch", "*.launch.py")),
-        (f"share/{package_name}/config", files("config", "*.yaml")),
+        (f"share/{package_name}/config", files("config", "*.yaml") + files("config", "*.xml")),
         # pip puts console scripts into bin/ only; `ros2 run` looks here.
         (f"lib/{package_name}", files("scripts", "*")),
     ],

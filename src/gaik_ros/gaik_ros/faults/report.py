@@ -26,6 +26,15 @@ In every case, besides what the table promises: every `joint_command` is finite 
 restarted but what was ended. Times are bounded by what is promised and a second more, for a busy machine; what was
 measured stands here. On a machine that is late the gains fall (ADR 5), so the arm may be further behind than on an
 idle one.
+
+One thing no node can mend. Between processes of one host Fast DDS passes messages through shared memory. A process that
+is stopped or killed while it holds a lock there can leave others deaf to it and to whatever is started later
+(eProsima/Fast-DDS issue 5469). To them it is a cut cable: the timeouts hold, but only a restart helps. Where nodes may
+be killed, have them talk over UDP; so they did for this page, and do in the tests:
+
+```bash
+export ROS_AUTOMATIC_DISCOVERY_RANGE=SYSTEM_DEFAULT FASTRTPS_DEFAULT_PROFILES_FILE=$PWD/config/fastdds_udp.xml
+```
 """
 
 
