@@ -16,13 +16,13 @@ from peers.protocol import Solver
 from problems import Problem
 
 PEER_TARGETS = 1000
-"""Peers, which take one target after another, get the first targets only."""
+"""Peers get the first targets only, one after another or all at once."""
 BUDGET = 2.0
 """Seconds that a call of `solve_batch` may take."""
 
 
 def measure_batch(problem: Problem, peers: Sequence[type[Solver]], rounds: int) -> list[Result]:
-    """Seconds per target of `solve_batch`, on one core and on all where it can be told, and of each peer in a loop."""
+    """Seconds per target of `solve_batch`, on one core and on all where it can be told, and of each peer."""
     tasks, names, counts, shares = [], [], [], []
     for name, options in _ways():
         wanted = _affordable(problem, options)
@@ -36,8 +36,8 @@ def measure_batch(problem: Problem, peers: Sequence[type[Solver]], rounds: int) 
         targets, start = solver.targets(), solver.start()
         found = answers(solver, targets, start)
         tasks.append(lambda solver=solver, targets=targets, start=start: answers(solver, targets, start))
-        names.append((f"{kind.name}, one by one", kind.package))
-        counts.append(len(targets))
+        names.append((kind.name if kind.at_once else f"{kind.name}, one by one", kind.package))
+        counts.append(len(solver.problem.targets))
         shares.append(judge(solver.problem, solver.angles(found)))
     seconds = interleave(tasks, rounds, problem.key) / np.array(counts)[:, None]
     results = [

@@ -26,6 +26,11 @@ PEERS = (
     ("peers.pink_qp", "Pink"),
     ("peers.ikpy_scipy", "Ikpy"),
 )
+BATCH_PEERS = (
+    ("peers.toolbox", "Toolbox"),
+    ("peers.kdl", "Kdl"),
+    ("peers.pytorch_batch", "PytorchKinematics"),
+)
 PACKAGES = (
     ("peers.our_algebra", "OurAlgebra"),
     ("peers.gafro", "Gafro"),

@@ -13,7 +13,7 @@ from algebra_problem import algebra_problem
 from batch import measure_batch
 from measure import measure
 from plots import plot_scaling, plot_tasks
-from registry import OURS, PACKAGES, PEERS, Field, load
+from registry import BATCH_PEERS, OURS, PACKAGES, PEERS, Field, load
 from report import Task, page
 from scaling import measure_scaling
 
@@ -23,7 +23,6 @@ SINGLE = {
     "T2p": problems.panda_poses,
     "T3": problems.touch_circle,
 }
-BATCH_PEERS = ("roboticstoolbox", "PyKDL")
 TASKS = (*SINGLE, "T4", "T5", "scaling")
 DOCS = Path(__file__).parent.parent / "docs"
 
@@ -37,8 +36,9 @@ def main() -> int:
     missing = dict(peers.missing)
     if "T4" in arguments.tasks:
         problem = problems.panda_batch(arguments.batch)
-        chosen = [peer for peer in peers.classes if peer.name in BATCH_PEERS]
-        results = measure_batch(problem, chosen, arguments.rounds)
+        at_batch = load(BATCH_PEERS, arguments.peers)
+        missing |= at_batch.missing
+        results = measure_batch(problem, at_batch.classes, arguments.rounds)
         best = next(r.name for r in results if r.package == "gaik_core")
         tasks.append(Task("T4", problem.title, results, reference=best))
     if "T5" in arguments.tasks:

@@ -27,10 +27,12 @@ class Solver(ABC):
     Attributes:
         name: as the tables have it.
         package: the distribution whose version the tables give.
+        at_once: whether all targets are one to it; such a solver takes part in T4 alone.
     """
 
     name: ClassVar[str]
     package: ClassVar[str]
+    at_once: ClassVar[bool] = False
 
     def __init__(self, problem: Problem) -> None:
         """Set up for a problem; raises NotSolvableError."""
