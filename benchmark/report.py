@@ -23,7 +23,8 @@ A solve goes from NumPy to NumPy: a target as an array, or a pose as the solver'
 as an array. gaik is timed so through its public functions with all their checks. Of the peers only PyKDL wants types of
 its own; a second row gives its time without the conversions, and counts for no aim. A solver that has restarts may try
 {restarts} of them on the Panda; nobody has any on T1 and T3. The loops of Pinocchio, MuJoCo, mink and pink are those of
-their own examples with full steps, in Python.
+their own examples with full steps, in Python. PyTorch Kinematics is given all its targets at once, in the 32 bits it
+prefers, and the one start; with ten starts it solves all and is several times slower.
 
 - Machine: {machine}
 - Versions: {versions}
@@ -31,7 +32,8 @@ their own examples with full steps, in Python.
 
 To run it again: `make bench`. It makes an environment of its own under `out/bench`, of every peer that pip can install
 there. PyKDL is not on PyPI; on Debian and Ubuntu it is `apt install python3-pykdl`, built for numpy before 2, and is
-found from an environment of the system's version of Python.
+found from an environment of the system's version of Python. PyTorch is left to whoever wants to download it:
+`out/bench/bin/pip install torch pytorch-kinematics==0.10.0`.
 """
 
 
