@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from reprlib import repr as shortened
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -19,13 +20,15 @@ def array_of(what: str, value: ArrayLike) -> Array:
     try:
         return np.ascontiguousarray(value, dtype=np.float64)
     except (TypeError, ValueError):
-        raise GaikError(f"{what} is {value!r}; expected an array of numbers") from None
+        raise GaikError(f"{what} is {shortened(value)}; expected an array of numbers") from None
 
 
 def finite(what: str, array: Array) -> Array:
-    """The array itself; raises NotFiniteError."""
-    if not np.isfinite(array).all():
-        raise NotFiniteError(what, array.tolist())
+    """The array itself; raises NotFiniteError, which of many vectors names the first that is not."""
+    good = np.isfinite(array)
+    if not good.all():
+        first = tuple(np.argwhere(~good)[0][:-1])
+        raise NotFiniteError(what + "".join(f"[{i}]" for i in first), array[first].tolist())
     return array
 
 
@@ -34,7 +37,7 @@ def copied_vector(what: str, value: ArrayLike, length: int) -> Array:
     try:
         array = np.array(value, _FLOAT)
     except (TypeError, ValueError):
-        raise GaikError(f"{what} is {value!r}; expected an array of numbers") from None
+        raise GaikError(f"{what} is {shortened(value)}; expected an array of numbers") from None
     if array.shape != (length,):
         raise ShapeError(what, array.shape, f"({length},)")
     return array

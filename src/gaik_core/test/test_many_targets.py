@@ -174,8 +174,10 @@ class TestBadArguments:
     def test_of_many_targets(self, many):
         with pytest.raises(ShapeError, match=r"targets has shape \(3,\); expected \(m, 3\)"):
             many(TOUCH, [0, 0, 0])
-        with pytest.raises(NotFiniteError, match="targets"):
-            many(TOUCH, [[0, 0, np.nan]])
+        with pytest.raises(
+            NotFiniteError, match=r"^targets\[2\] is \[0.0, 0.0, nan\]; every element must be finite$"
+        ):
+            many(TOUCH, [[0, 0, 0], [0, 0, 0], [0, 0, np.nan], [np.inf, 0, 0]])
         with pytest.raises(GaikError, match="tolerance is 0"):
             many(TOUCH, [[0, 0, 0]], tolerance=0)
         with pytest.raises(ShapeError, match="start has shape"):
