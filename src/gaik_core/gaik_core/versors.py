@@ -22,7 +22,7 @@ from gaik_core.cga.basis import BLADES, E1, E2, E3, E4, E5, E12, E13, E23, E123,
 from gaik_core.cga.blades import einf
 from gaik_core.cga.multivector import Operand, wrap
 from gaik_core.cga.objects import unit
-from gaik_core.cga.products import GEOMETRIC, product
+from gaik_core.cga.products import GEOMETRIC, product, sandwich
 from gaik_core.errors import GaikError
 from gaik_core.quaternion import Quaternion
 
@@ -162,7 +162,7 @@ class Motor(Multivector):
     def apply(self, x: Multivector | ArrayLike) -> Multivector | Array:
         """M x M̃ of a multivector, or the positions `(…, 3)` to which positions `(…, 3)` go; both broadcast."""
         if isinstance(x, Multivector):
-            return wrap(self._components) * x * ~wrap(self._components)
+            return wrap(sandwich(self._components, x._components))
         return quaternion.rotate(self.rotation, x) + self.translation
 
     # --- what it does ------------------------------------------------------------------------------------------------

@@ -83,6 +83,15 @@ def test_motors_move_every_object_alike():
     assert close(MOTORS.apply(einf), einf, atol=1e-12)
 
 
+def test_one_motor_moves_one_object_as_many_move_many():
+    lines, mixed = cga.line(POINTS, PLACES), Multivector(RANDOM.normal(size=(30, 32)))
+    for objects in (cga.up(POINTS), lines, mixed):
+        together = MOTORS.apply(objects)
+        for motor, x, image in zip(MOTORS, objects, together, strict=True):
+            assert close(motor.apply(x), image, atol=1e-10)
+            assert close(motor * x * ~motor, image, atol=1e-10)
+
+
 def test_composition_does_the_right_factor_first():
     n = Motor.from_axis(TRANSLATIONS, POINTS, SLIDES)
     np.testing.assert_allclose((MOTORS * n).apply(POINTS), MOTORS.apply(n.apply(POINTS)), atol=1e-11)

@@ -11,7 +11,7 @@ from types import FunctionType
 import numpy as np
 
 from gaik_core.arrays import Array
-from gaik_core.cga.basis import BITS, BLADES, GRADES, PSEUDOSCALAR, SIGNS
+from gaik_core.cga.basis import BITS, BLADES, GRADES, PSEUDOSCALAR, REVERSE, SIGNS
 from gaik_core.kernels import multivector as kernels
 
 _left, _right = GRADES[:, None], GRADES[None, :]
@@ -44,6 +44,15 @@ def product(table: Array, a: Array, b: Array) -> Array:
     out = np.empty(shape)
     kernels.product_rows(table, a.reshape(-1, BLADES), b.reshape(-1, BLADES), out.reshape(-1, BLADES))
     return out
+
+
+def sandwich(versor: Array, x: Array) -> Array:
+    """V x Ṽ; of two single ones in one kernel, which takes half the time of two products."""
+    if versor.ndim == 1 and x.ndim == 1:
+        out = np.empty(BLADES)
+        kernels.sandwich(GEOMETRIC, REVERSE, versor, x, out)
+        return out
+    return product(GEOMETRIC, product(GEOMETRIC, versor, x), versor * REVERSE)
 
 
 def product_by_numpy(table: Array, a: Array, b: Array) -> Array:

@@ -23,6 +23,16 @@ def product(table: Array, a: Array, b: Array, out: Array) -> None:
 
 
 @compiled
+def sandwich(table: Array, reverse: Array, versor: Array, x: Array, out: Array) -> None:
+    """out = V x Ṽ by the geometric product's table and the signs of the reverse, each array (32,)."""
+    half, reversed_versor = np.empty(32), np.empty(32)
+    for k in range(32):
+        reversed_versor[k] = reverse[k] * versor[k]
+    product(table, versor, x, half)
+    product(table, half, reversed_versor, out)
+
+
+@compiled
 def product_rows(table: Array, a: Array, b: Array, out: Array) -> None:
     """The product of each row of a with the same row of b, each array (m, 32)."""
     for row in range(out.shape[0]):
