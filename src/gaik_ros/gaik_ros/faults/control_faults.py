@@ -10,9 +10,10 @@ from typing import Any
 import numpy as np
 from std_srvs.srv import SetBool, Trigger
 
+from gaik_ros.conversions import joint_values
 from gaik_ros.faults.fault import Check, Fault, Need
-from gaik_ros.faults.measures import LATE, follows, largest_step
-from gaik_ros.faults.stage import Stage
+from gaik_ros.faults.measures import follows, largest_step
+from gaik_ros.faults.stage import ARRIVED, Array, Stage
 
 WOUND_UP = 0.03  # rad; an integral that was wound up holds the arm 0.1 off, and more, for seconds
 SMALL_STEP = 0.5  # N·m between two commands; an effort that jumps does so by its limit of 1
@@ -46,8 +47,7 @@ def _saturation(seconds: float, integral_gain: float | None) -> Any:
                 _changed(stage, "pid_controller", EVEN_IF_LATE),
                 _changed(stage, "touch_sim", {"gain": HELD}),
             ):
-                stage.send(target)
-                stage.wait(lambda: _arrived(stage), "the reference arrives")
+                _lead(stage, target)
                 mark = stage.mark()
                 stage.sleep(seconds)
                 efforts = stage.since(mark).joints("joint_command", stage.names, "effort").values
@@ -76,11 +76,17 @@ def _saturation(seconds: float, integral_gain: float | None) -> Any:
     return play
 
 
-def _arrived(stage: Stage) -> bool:
-    reference = stage.probe.newest("joint_reference")
-    return (
-        reference is not None and not np.any(reference.velocity) and stage.probe.age("joint_reference") < LATE
-    )
+def _lead(stage: Stage, target: Array) -> None:
+    """Send the tip to `target`, and wait until the reference stands there, though a hand holds the device."""
+
+    def there() -> bool:
+        reference = stage.probe.newest("joint_reference")
+        if reference is None or np.any(reference.velocity):
+            return False
+        return bool(np.linalg.norm(stage.point(joint_values(reference, stage.names)) - target) < ARRIVED)
+
+    stage.send(target)
+    stage.wait(there, "the reference arrives")
 
 
 GOOD: tuple[tuple[str, dict[str, Any]], ...] = (
@@ -186,8 +192,7 @@ def _under_load(stage: Stage) -> list[Check]:
         _changed(stage, "touch_sim", {"gain": HELD}),
         _changed(stage, "pid_controller", PATIENT | EVEN_IF_LATE),
     ):
-        stage.send(stage.between(0.5))
-        stage.wait(lambda: _arrived(stage), "the reference arrives")
+        _lead(stage, stage.between(0.5))
         stage.sleep(1.0)
         mark = stage.mark()
         before = stage.remote.parameters("pid_controller", ["gains.p", "gains.d"])
