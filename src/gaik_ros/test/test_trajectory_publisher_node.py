@@ -51,9 +51,8 @@ def test_one_lap_is_sent_point_by_point_and_ends_where_it_began(start, name, pat
     wait_until(lambda: not node._running)
     wait_until(lambda: len(bench.setpoints) == node._sent)
     points = heard(bench)
-    skipped = (
-        node.loop.schedule.skipped - skipped_before
-    )  # some of them perhaps just before the path, or after it
+    # Some of these were perhaps left out just before the path, or after it.
+    skipped = node.loop.schedule.skipped - skipped_before
     assert 101 - skipped <= len(points) <= 101
     np.testing.assert_allclose(points[0], path.position(0.0), atol=1e-12)
     np.testing.assert_allclose(points[-1], path.position(0.0), atol=1e-12)
