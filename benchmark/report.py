@@ -24,7 +24,7 @@ as an array. gaik is timed so through its public functions with all their checks
 its own; a second row gives its time without the conversions, and counts for no aim. A solver that has restarts may try
 {restarts} of them on the Panda; nobody has any on T1 and T3. The loops of Pinocchio, MuJoCo, mink and pink are those of
 their own examples with full steps, in Python. PyTorch Kinematics is given all its targets at once, in the 32 bits it
-prefers, and the one start; with ten starts it solves all and is several times slower.
+prefers, and the one start.
 
 - Machine: {machine}
 - Versions: {versions}

@@ -30,7 +30,7 @@ idle one.
 One thing no node can mend. Between processes of one host Fast DDS passes messages through shared memory. A process that
 is stopped or killed while it holds a lock there can leave others deaf to it and to whatever is started later
 (eProsima/Fast-DDS issue 5469). To them it is a cut cable: the timeouts hold, but only a restart helps. Where nodes may
-be killed, have them talk over UDP; so they did for this page, and do in the tests:
+be killed, have them talk over UDP. The tests do, and this page is made after the same:
 
 ```bash
 export ROS_AUTOMATIC_DISCOVERY_RANGE=SYSTEM_DEFAULT FASTRTPS_DEFAULT_PROFILES_FILE=$PWD/config/fastdds_udp.xml
