@@ -56,11 +56,9 @@ def _batch(ours: dict[str, Result], peers: Sequence[Result]) -> list[Aim]:
     found = []
     for name, result in ours.items():
         if name.endswith(", conformal"):
-            plain = name.removesuffix(", conformal")
-            found.append(_at_most_twice("T4", result, ours[plain]))
-            continue
-        wanted = 50 if name.endswith("1 core") else 100
-        if peers:
+            found.append(_at_most_twice("T4", result, ours[name.removesuffix(", conformal")]))
+        elif peers:
+            wanted = 50 if name.endswith("1 core") else 100
             best = min(peers, key=lambda peer: peer.ratio(result))
             ratio = best.ratio(result)
             text = f"T4: {name} has at least {wanted} times the best peer's throughput"
