@@ -52,6 +52,23 @@ class Visit:
         focal = 0.5 * camera.image_height / np.tan(0.5 * camera.fov)
         return 0.5 * camera.image_width + focal * x / z, 0.5 * camera.image_height + focal * y / z
 
+    @property
+    def view_is_set(self):
+        """Whether the browser looks from where the page opens; until its first frame it looks from elsewhere."""
+        (client,) = self.viewer.page.server.get_clients().values()
+        return np.allclose(client.camera.position, self.viewer.page.server.initial_camera.position, atol=1e-6)
+
+    def pixel_of_ball(self):
+        """Where the browser shows the ball, once its cursor there says that it can be taken."""
+        wait_until(self._is_ball_under_mouse, "the browser does not show the ball where it is")
+        return self.pixel(self.ball)
+
+    def _is_ball_under_mouse(self):
+        self.page.hover(*self.pixel(self.ball))
+        return self.page.evaluate(
+            "[...document.querySelectorAll('canvas')].some(c => c.style.cursor === 'pointer')"
+        )
+
     def settled(self):
         """The newest setpoint, once no more come and the tip is there."""
         end = time.monotonic() + PATIENCE
@@ -85,7 +102,9 @@ def visit():
             page.open(viewer.page.address)
             wait_until(lambda: viewer.page.visitors == 1, "the browser does not come")
             wait_until(lambda: "pid_controller" in page.text(), "the page shows no nodes")
-            yield Visit(bench, viewer, ik, controller, page)
+            visit = Visit(bench, viewer, ik, controller, page)
+            wait_until(lambda: visit.view_is_set, "the scene is not drawn")
+            yield visit
     finally:
         rclpy.try_shutdown(context=context)
 
@@ -104,9 +123,9 @@ def test_the_page_shows_the_suite_and_its_scripts_run(visit):
 def test_the_ball_is_dragged_and_the_arm_follows(visit):
     heard, before = len(visit.bench.setpoints), visit.ball
     np.testing.assert_allclose(before, visit.tip, atol=SETTLED)
-    x, y = visit.pixel(before)
+    x, y = visit.pixel_of_ball()
     visit.page.drag((x, y), (x + 40, y - 60))
-    wait_until(lambda: len(visit.bench.setpoints) > heard + 3, "no setpoints come while the ball is dragged")
+    wait_until(lambda: len(visit.bench.setpoints) > heard, "no setpoints come while the ball is dragged")
     last = visit.settled()
     assert np.linalg.norm(last - before) > 0.02
     # The ball goes with the mouse, in the plane of the screen.
@@ -116,10 +135,11 @@ def test_the_ball_is_dragged_and_the_arm_follows(visit):
 
 
 def test_an_arrow_moves_the_setpoint_along_its_axis_alone(visit):
+    visit.pixel_of_ball()
     heard, before = len(visit.bench.setpoints), visit.ball
     start, end = visit.pixel(before + 0.06 * X), visit.pixel(before + 0.10 * X)
     visit.page.drag(start, end)
-    wait_until(lambda: len(visit.bench.setpoints) > heard + 3, "no setpoints come while the arrow is dragged")
+    wait_until(lambda: len(visit.bench.setpoints) > heard, "no setpoints come while the arrow is dragged")
     moved = visit.settled() - before
     assert moved[0] > 0.02
     np.testing.assert_allclose(moved[1:], 0.0, atol=1e-6)
@@ -142,8 +162,6 @@ def test_the_choices_and_sliders_set_the_nodes_real_parameters(visit):
     page = visit.page
     assert visit.ik.get_parameter("algebra").value == "quaternion"
     page.click(*place_of(page, "input[value=quaternion]"))
-    wait_until(lambda: place_of(page, "[role=option][value=conformal]"), "the list does not open")
-    time.sleep(0.5)  # it slides open
     page.click(*place_of(page, "[role=option][value=conformal]"))
     wait_until(lambda: visit.ik.get_parameter("algebra").value == "conformal", "the algebra is not set")
 
@@ -179,9 +197,12 @@ def test_reset_holds_where_the_device_is(visit):
 
 
 def place_of(page, selector):
-    """The middle of the element, None where there is none."""
-    return page.evaluate(
+    """The middle of the element, once it is there and nothing covers it."""
+    middle = (
         f"(() => {{ const e = document.querySelector({selector!r}); if (!e) return null;"
         " e.scrollIntoView({block: 'nearest'}); const r = e.getBoundingClientRect();"
-        " return [r.x + r.width / 2, r.y + r.height / 2] })()"
+        " const x = r.x + r.width / 2, y = r.y + r.height / 2;"
+        " return e.contains(document.elementFromPoint(x, y)) ? [x, y] : null })()"
     )
+    wait_until(lambda: page.evaluate(middle), f"{selector} is not shown")
+    return page.evaluate(middle)
