@@ -41,8 +41,10 @@ def pack(joints: Sequence[Joint], origin: Array, orientation: Array) -> Chain:
 
 
 def without_limits(packed: Chain) -> Chain:
-    """The same chain with no limit to hold."""
+    """The same chain with no limit to hold: any slide reaches as far as one likes."""
     axes, coupled, ends, _, _ = packed
+    if (axes[:, 0] == PRISMATIC).any():
+        ends = np.concatenate([ends[:10], (0.0, np.inf)])
     return _read_only((axes, coupled, ends, np.empty((2, 0)), np.empty((0, 3))))
 
 

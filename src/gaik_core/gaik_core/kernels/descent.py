@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from gaik_core.kernels.compiled import inlined, uncounted
 from gaik_core.kernels.kinematics import Chain, kinematics
-from gaik_core.kernels.limits import blocked_axes, blocked_joints, clamp_joints, hold_axes, project_axes
+from gaik_core.kernels.limits import blocked_axes, blocked_joints, clamp_joints, hold_axes, move_inside
 from gaik_core.kernels.rules import SLOTS, step
 from gaik_core.kernels.task import measure, task_rows
 
@@ -24,7 +24,7 @@ IMPATIENCE = 0.2
 """The share while other starts are left to try: a slow way is then not worth its updates."""
 
 FAR = 10.0
-"""Targets further than this many reaches are pulled in."""
+"""Targets further than this many reaches, and twice the tolerance, are pulled in."""
 
 LARGEST, POSE_SIZE = 9, 7
 """The numbers of the longest target, and of a pose."""
@@ -86,14 +86,14 @@ def unreachable(chain: Chain, target: Array, tolerance: float) -> bool:
 
 
 @inlined
-def pull_in(chain: Chain, target: Array, near: Array) -> None:
-    """Write the target into `near` or, where it is further than FAR reaches, the point that far on the way to it.
+def pull_in(chain: Chain, target: Array, tolerance: float, near: Array) -> None:
+    """Write the target into `near` or, where it is far, a point on the way to it that is out of reach as well.
 
     The arm stretches toward either alike, and what is descended stays of a size that floating point can square.
     """
     copy(target, near)
     ends, distance = chain[2], distance_from_base(chain, target)
-    furthest = FAR * ends[11]
+    furthest = FAR * ends[11] + 2.0 * tolerance
     if distance > furthest:
         for k in range(3):
             near[k] = ends[k] + (target[k] - ends[k]) * (furthest / distance)
@@ -137,9 +137,7 @@ def descend(
         for j in range(state.shape[1]):
             state[k, j] = 0.0
     limited = limits.shape[1] > 0
-    if limited:
-        clamp_joints(limits, angles)
-        project_axes(axes, couplings, limits, held, angles)
+    inside = not limited or move_inside(axes, couplings, limits, held, angles)
     best, since, iterations = np.inf, 0, 0
     while True:
         kinematics(algebra, axes, couplings, ends, angles, turned, columns, pose, jacobian)
@@ -147,6 +145,8 @@ def descend(
         if iterations < trace_errors.shape[0]:
             copy(angles, trace_angles[iterations])
             trace_errors[iterations, 0], trace_errors[iterations, 1] = distance, turn
+        if not inside:
+            return LIMITED, iterations, distance, turn
         if distance < tolerance and turn < orientation_tolerance:
             return CONVERGED, iterations, distance, turn
         loss = square(error)
@@ -194,7 +194,7 @@ def solve_once(
     if not (all_finite(target) and all_finite(angles)):
         return NOT_FINITE, 0, np.nan, np.nan
     near, free = work[: target.shape[0]], work[LARGEST:]
-    pull_in(chain, target, near)
+    pull_in(chain, target, stop[0], near)
     status, iterations, distance, turn = descend(
         algebra, chain, kind, near, stop, rule, settings, angles, improvement, trace_angles, trace_errors, free,
     )  # fmt: skip

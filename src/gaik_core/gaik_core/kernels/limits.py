@@ -13,8 +13,14 @@ from gaik_core.kernels.compiled import compiled, inlined
 
 Array = NDArray[np.float64]
 
-SWEEPS = 20
-"""Rounds over the held axes before a projection gives up; one is enough unless axes share joints."""
+SWEEPS, START_SWEEPS = 20, 10_000
+"""Rounds over the held axes before a projection gives up: of an update, and of a start, which has no way back.
+
+One is enough unless axes share joints.
+"""
+
+OVER = 1.5
+"""By how much more each of those after SWEEPS turns an axis than to its limit: it cuts long ways in narrow corners."""
 
 MARGIN = 1e-12
 """An axis within this of its limit (rad) is on it: rounding of a sum of two angles."""
@@ -86,16 +92,27 @@ def axes_hold(axes: Array, couplings: Array, held: Array, angles: Array) -> bool
 
 
 @inlined
-def project_axes(axes: Array, couplings: Array, limits: Array, held: Array, angles: Array) -> bool:
+def project_axes(
+    axes: Array, couplings: Array, limits: Array, held: Array, sweeps: int, angles: Array
+) -> bool:
     """Turn each held axis into its limits, with no joint crossing its own; whether that succeeds."""
-    for _ in range(SWEEPS):
+    for sweep in range(sweeps):
         if axes_hold(axes, couplings, held, angles):
             return True
+        over = 1.0 if sweep < SWEEPS else OVER
         for h in range(held.shape[0]):
             axis = int(held[h, 0])
             angle = axis_angle(axis, axes, couplings, angles)
-            turn_axis(axis, min(max(angle, held[h, 1]), held[h, 2]) - angle, couplings, limits, angles)
+            by = min(max(angle, held[h, 1]), held[h, 2]) - angle
+            turn_axis(axis, over * by, couplings, limits, angles)
     return axes_hold(axes, couplings, held, angles)
+
+
+@inlined
+def move_inside(axes: Array, couplings: Array, limits: Array, held: Array, angles: Array) -> bool:
+    """Move angles inside the limits of joints and axes; whether that succeeds."""
+    clamp_joints(limits, angles)
+    return project_axes(axes, couplings, limits, held, START_SWEEPS, angles)
 
 
 @inlined
@@ -106,7 +123,7 @@ def hold_axes(
 
     `previous` is inside; the limits are convex, so what lies between it and an update can be kept.
     """
-    if project_axes(axes, couplings, limits, held, angles):
+    if project_axes(axes, couplings, limits, held, SWEEPS, angles):
         return
     share = 1.0
     for h in range(held.shape[0]):
@@ -122,9 +139,8 @@ def hold_axes(
 
 @compiled
 def can_hold(axes: Array, couplings: Array, limits: Array, held: Array, angles: Array) -> bool:
-    """Whether angles can be moved into the limits at all; moves them."""
-    clamp_joints(limits, angles)
-    return project_axes(axes, couplings, limits, held, angles)
+    """`move_inside`, for callers from Python."""
+    return move_inside(axes, couplings, limits, held, angles)
 
 
 @inlined

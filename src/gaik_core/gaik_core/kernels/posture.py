@@ -79,6 +79,15 @@ def drop_blocked_axes(
                     jacobian[i, joint] = 0.0
 
 
+@inlined
+def square_between(a: Array, b: Array) -> float:
+    """|a - b|²."""
+    total = 0.0
+    for j in range(a.shape[0]):
+        total += (a[j] - b[j]) * (a[j] - b[j])
+    return total
+
+
 @compiled
 def settle(
     algebra: int,
@@ -92,8 +101,8 @@ def settle(
 ) -> tuple[int, float, float]:
     """Move `angles`, which satisfy the target, toward `posture` for as long as they go on satisfying it.
 
-    `settings` are those of Levenberg-Marquardt, which brings the tip back after each step. Returns the updates made,
-    and the distance and the angle left.
+    `settings` are those of Levenberg-Marquardt, which brings the tip back after each step. A step counts only if after
+    that the posture is nearer than before. Returns the updates made, and the distance and the angle left.
     """
     tolerance, orientation_tolerance, weight, _, max_iterations = stop
     axes, couplings, ends, limits, held = chain
@@ -110,6 +119,7 @@ def settle(
         drop_blocked(limits, angles, step, jacobian)
         drop_blocked_axes(axes, couplings, held, angles, step, jacobian)
         null_space_part(jacobian, normal, weighed, step)
+        apart = square_between(posture, angles)
         if square(step) < POSTURE_TOLERANCE**2 or share < SHORTEST or iterations >= max_iterations:
             return iterations, distance, turn
         copy(angles, kept)
@@ -124,7 +134,9 @@ def settle(
             kinematics(algebra, axes, couplings, ends, angles, turned, columns, pose, jacobian)
             distance, turn = measure(kind, weight, target, pose, jacobian, error)
             if distance < tolerance and turn < orientation_tolerance:
-                arrived = True
+                arrived = square_between(posture, angles) < apart
+                break
+            if iterations >= max_iterations:
                 break
             levenberg_marquardt(angles, error, jacobian, normal, settings)
         if arrived:

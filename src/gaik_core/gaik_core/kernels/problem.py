@@ -17,7 +17,6 @@ Array = NDArray[np.float64]
 
 HEADER, AXES = 13, 4  # how long the header is, and where it says how many axes there are
 AXIS, COUPLING, ENDS, HELD = 11, 3, 12, 3  # columns of a chain's arrays
-MOST_ITERATIONS = 2**53  # a float64 counts no further
 
 
 def pack_problem(algebra: int, chain: Chain, kind: int, stop: Stop, rule: int, settings: Array) -> Array:
@@ -27,7 +26,6 @@ def pack_problem(algebra: int, chain: Chain, kind: int, stop: Stop, rule: int, s
         [algebra, kind, rule, len(settings), len(axes), len(couplings), limits.shape[1], len(held), *stop],
         dtype=np.float64,
     )
-    header[-1] = min(stop[-1], MOST_ITERATIONS)
     packed = np.concatenate([header, settings, *(array.ravel() for array in chain)])
     packed.flags.writeable = False
     return packed
