@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
-from typing import Literal, get_args
+from typing import Any, Literal, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from gaik_core.checks import array_of, finite, finite_vector
+from gaik_core.checks import array_of, finite, finite_vector, unit_vector
 from gaik_core.errors import GaikError, ShapeError, UnknownNameError
 from gaik_core.joint import Joint
 from gaik_core.kernels import kinematics as kernels
@@ -73,6 +74,9 @@ class KinematicChain:
             GaikError: where the chain has no joint, two of one name, or a coupling to a joint it has not.
         """
         self.joints = tuple(joints)
+        for joint in self.joints:
+            if not isinstance(joint, Joint):
+                raise GaikError(f"a joint is {joint!r}; expected a Joint")
         active = [joint for joint in self.joints if not joint.passive]
         _check_names(self.joints, [joint.name for joint in active])
         self.name = name
@@ -80,8 +84,8 @@ class KinematicChain:
         self.dof = len(active)
         self.joint_names = tuple(joint.name for joint in active)
         self.axis_names = tuple(joint.name for joint in self.joints)
-        turn = finite_vector("orientation", orientation, 4)
-        self.packed = pack(self.joints, finite_vector("origin", origin, 3), turn / np.linalg.norm(turn))
+        turn = unit_vector("orientation", orientation, 4)
+        self.packed = pack(self.joints, finite_vector("origin", origin, 3), turn)
         self.packed_without_limits = without_limits(self.packed)
         axes, couplings, ends, limits, held = self.packed
         self.lower, self.upper = limits
@@ -97,8 +101,21 @@ class KinematicChain:
         self.reach = float(ends[11])
         if len(held) and not can_hold(axes, couplings, limits, held, self.home.copy()):
             raise GaikError(
-                f"{name}: no joint values within their limits bring every axis within its axis_limits"
+                f"{name}: no joint values are found within their limits that bring every axis within its axis_limits; "
+                "give a home that does"
             )
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        # Made anew where it is copied or sent to another process: arrays do not stay read-only on that way.
+        ends = self.packed[2]
+        made = partial(
+            KinematicChain,
+            name=self.name,
+            description=self.description,
+            origin=ends[:3].copy(),
+            orientation=ends[6:10].copy(),
+        )
+        return made, (self.joints,)
 
     def __repr__(self) -> str:
         return f"KinematicChain({self.name!r}, joints={list(self.joint_names)})"
@@ -170,7 +187,11 @@ class KinematicChain:
 
     def axis_angles(self, angles: ArrayLike) -> Array:
         """Angles about the axes (…, axes) for joint values (…, dof): C θ + offset."""
-        return finite("angles", array_of("angles", angles)) @ self.coupling.T + self.offset
+        values = finite("angles", array_of("angles", angles))
+        if values.ndim == 0 or values.shape[-1] != self.dof:
+            raise ShapeError("angles", values.shape, f"(…, {self.dof})")
+        result: Array = values @ self.coupling.T + self.offset
+        return result
 
     def frames(self, angles: ArrayLike) -> Array:
         """Where each axis stands and, last, the tip: (axes + 1, 3) in m, for drawing the arm."""

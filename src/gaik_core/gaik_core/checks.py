@@ -23,6 +23,17 @@ def array_of(what: str, value: ArrayLike) -> Array:
         raise GaikError(f"{what} is {shortened(value)}; expected an array of numbers") from None
 
 
+def unit_vector(what: str, value: ArrayLike, length: int) -> Array:
+    """`value` (length,) made a unit vector; raises GaikError where it is zero or not finite."""
+    array = finite_vector(what, value, length)
+    largest = float(np.abs(array).max())
+    if largest == 0.0:
+        raise GaikError(f"{what} is {array.tolist()}; expected anything but zero")
+    array /= largest  # so that 1e200 does not overflow
+    array /= np.linalg.norm(array)
+    return array
+
+
 def finite(what: str, array: Array) -> Array:
     """The array itself; raises NotFiniteError, which of many vectors names the first that is not."""
     good = np.isfinite(array)
@@ -61,7 +72,7 @@ def positive(what: str, value: float) -> float:
     try:
         if 0.0 < value < math.inf:
             return float(value)
-    except TypeError:
+    except (TypeError, ValueError):
         pass
     raise GaikError(f"{what} is {value!r}; expected a number above 0 and finite")
 

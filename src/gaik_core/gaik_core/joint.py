@@ -3,13 +3,20 @@
 from __future__ import annotations
 
 import math
+import numbers
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
+from functools import partial
 from types import MappingProxyType
-from typing import Literal
+from typing import Any, Literal, get_args
+
+from gaik_core.checks import finite_vector, unit_vector
+from gaik_core.errors import GaikError
 
 Vector = tuple[float, float, float]
 Kind = Literal["revolute", "prismatic"]
+
+KINDS: tuple[str, ...] = get_args(Kind)
 
 
 @dataclass(frozen=True)
@@ -26,7 +33,7 @@ class Joint:
     link: Vector = (0.0, 0.0, 0.0)
     """From this axis to the next, or to the tip (m)."""
     kind: Kind = "revolute"
-    coupling: Mapping[str, float] = field(default_factory=dict)
+    coupling: Mapping[str, float] = field(default_factory=dict, hash=False)
     """Factors of other joints' values."""
     passive: bool = False
     """Whether the axis has no value of its own and follows its coupling alone."""
@@ -42,23 +49,43 @@ class Joint:
     """The joint's value where a solve starts by default (rad or m)."""
 
     def __post_init__(self) -> None:
-        norm = math.hypot(*self.axis)
-        if not (math.isfinite(norm) and norm > 0.0):
-            raise ValueError(
-                f"joint {self.name!r}: axis is {list(self.axis)}; expected a direction other than zero"
-            )
+        """Check and freeze; GaikError: what is wrong with which joint."""
+        if self.kind not in KINDS:
+            raise self._error("kind", repr(self.kind), f"expected {' or '.join(KINDS)}")
+        axis = unit_vector(f"joint {self.name!r}: axis", self.axis, 3)
+        link = finite_vector(f"joint {self.name!r}: link", self.link, 3)
+        for what, number in {"offset": self.offset, "home": self.home, **self._factors()}.items():
+            if not _is_finite(number):
+                raise self._error(what, repr(number), "expected a finite number")
         for what, low, high in (
             ("limits", self.lower, self.upper),
             ("axis_limits", self.axis_lower, self.axis_upper),
         ):
             if not low <= high:
-                raise ValueError(
-                    f"joint {self.name!r}: {what} are [{low:g}, {high:g}]; the first must not be above the second"
-                )
+                raise self._error(what, f"[{low:g}, {high:g}]", "the first must not be above the second")
+        if self.passive and (self.lower > -math.inf or self.upper < math.inf):
+            limits = f"[{self.lower:g}, {self.upper:g}]"
+            raise self._error("limits", limits, "a passive joint has no value; give its axis axis_limits")
         if not self.passive and not self.lower <= self.home <= self.upper:
-            raise ValueError(
-                f"joint {self.name!r}: home is {self.home:g}; expected within its limits "
-                f"[{self.lower:g}, {self.upper:g}]"
+            raise self._error(
+                "home", f"{self.home:g}", f"expected within its limits [{self.lower:g}, {self.upper:g}]"
             )
-        object.__setattr__(self, "axis", tuple(component / norm for component in self.axis))
+        object.__setattr__(self, "axis", tuple(axis.tolist()))
+        object.__setattr__(self, "link", tuple(link.tolist()))
         object.__setattr__(self, "coupling", MappingProxyType(dict(self.coupling)))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        given = {each.name: getattr(self, each.name) for each in fields(self)}
+        return partial(Joint, **given | {"coupling": dict(self.coupling)}), ()
+
+    def _factors(self) -> dict[str, float]:
+        return {f"coupling to {name!r}": factor for name, factor in self.coupling.items()}
+
+    def _error(self, what: str, was: str, expected: str) -> GaikError:
+        return GaikError(
+            f"joint {self.name!r}: {what} {'are' if what.endswith('s') else 'is'} {was}; {expected}"
+        )
+
+
+def _is_finite(value: Any) -> bool:
+    return isinstance(value, numbers.Real) and math.isfinite(value)

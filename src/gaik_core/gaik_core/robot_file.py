@@ -25,13 +25,14 @@ import math
 import re
 from importlib.resources import files
 from pathlib import Path
+from reprlib import repr as shortened
 from typing import Any
 
 import yaml
 
 from gaik_core.chain import KinematicChain
 from gaik_core.errors import RobotFileError, UnknownRobotError
-from gaik_core.joint import Joint
+from gaik_core.joint import KINDS, Joint
 
 CHAIN_KEYS = ("name", "description", "origin", "orientation", "joints")
 JOINT_KEYS = (
@@ -46,7 +47,6 @@ JOINT_KEYS = (
     "axis_limits",
     "home",
 )
-KINDS = ("revolute", "prismatic")
 
 
 def robot_names() -> list[str]:
@@ -59,10 +59,14 @@ def robot_names() -> list[str]:
 
 def load_robot(robot: str | Path) -> KinematicChain:
     """A shipped robot by its name, or a robot file by its path; see `KinematicChain.load`."""
+    if not isinstance(robot, str | Path):
+        raise UnknownRobotError("robot", robot, [*robot_names(), "or the path of a YAML file"])
     if robot in robot_names():
         text = (files("gaik_core") / "robots" / f"{robot}.yaml").read_text(encoding="utf-8")
         return parse_robot(text, f"{robot}.yaml")
     path = Path(robot)
+    if path.suffix == ".urdf":
+        raise RobotFileError(f"{path}: is a URDF; KinematicChain.from_urdf reads those")
     if path.suffix not in (".yaml", ".yml") and not path.is_file():
         raise UnknownRobotError("robot", str(robot), [*robot_names(), "or the path of a YAML file"])
     try:
@@ -113,13 +117,16 @@ def _joint(table: _Table) -> Joint:
     home = table.number("home", min(max(0.0, lower), upper))
     if not lower <= home <= upper:
         raise table.error("home", home, f"a number within limits [{lower:g}, {upper:g}]")
+    passive = table.flag("passive")
+    if passive and "limits" in table.data:
+        raise table.error("limits", [lower, upper], "none for a passive joint; its axis may have axis_limits")
     return Joint(
         name=table.text("name"),
         kind=kind,
         axis=table.numbers("axis", 3, zero=False),
         link=table.numbers("link", 3, (0.0, 0.0, 0.0)),
         coupling=table.factors("coupling"),
-        passive=table.flag("passive"),
+        passive=passive,
         offset=table.number("offset", 0.0),
         lower=lower,
         upper=upper,
@@ -216,4 +223,4 @@ _Loader.add_implicit_resolver(
 
 
 def _shown(value: Any) -> str:
-    return "missing" if value is None else repr(value)
+    return "missing" if value is None else shortened(value)

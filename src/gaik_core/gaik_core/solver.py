@@ -32,6 +32,8 @@ Array = NDArray[np.float64]
 
 __all__ = ["Solution", "Solutions", "Trace", "random_starts", "solve", "solve_batch", "solve_path"]
 
+MOST_ITERATIONS = 2**53  # a float64 counts no further
+
 _ADAM = Adam()
 _MARQUARDT = LevenbergMarquardt()
 
@@ -78,6 +80,8 @@ def solve(
     Raises:
         GaikError: an argument of the wrong shape, not finite, out of range or unknown; the message names it.
     """
+    if not isinstance(chain, KinematicChain):
+        raise _no_chain(chain)
     kind, wanted = pack_target(target)
     angles = copied_vector("start", chain.home if start is None else start, chain.dof)
     given = (
@@ -89,17 +93,18 @@ def solve(
         packed = _packed_problem.__wrapped__(*given)
     if trace:
         return _solve_traced(packed, wanted, angles, max_iterations, restarts, posture)
+    preferred = None if posture is None else finite_vector("posture", posture, chain.dof)
     used = 0
     if restarts:
-        starts = random_starts(chain, count("restarts", restarts), seed)
+        starts = random_starts(chain, count("restarts", restarts), count("seed", seed))
         status, iterations, error, turn, used = solve_packed_with_restarts(packed, wanted, angles, starts)
     else:
         status, iterations, error, turn = solve_packed(packed, wanted, angles)
     if status == kernels.NOT_FINITE:
         _raise_not_finite(wanted, angles)
-    if posture is not None and status == kernels.CONVERGED:
-        preferred = finite_vector("posture", posture, chain.dof)
-        stop = _stop(chain, kind, rule, tolerance, orientation_tolerance, orientation_weight, max_iterations)
+    if preferred is not None and status == kernels.CONVERGED:
+        left = max_iterations - iterations
+        stop = _stop(chain, kind, rule, tolerance, orientation_tolerance, orientation_weight, left)
         problem = (algebra_code(algebra), _packed(chain, limits), kind, wanted, stop)
         more, error, turn = settle(*problem, _MARQUARDT.settings, preferred, angles)
         iterations += more
@@ -143,6 +148,8 @@ def solve_batch(
     Raises:
         GaikError: as for `solve`; not one NaN among the targets is taken.
     """
+    if not isinstance(chain, KinematicChain):
+        raise _no_chain(chain)
     points = rows("targets", targets, 3)
     first = array_of("start", chain.home if start is None else start)
     if first.shape not in ((chain.dof,), (len(points), chain.dof)):
@@ -156,7 +163,7 @@ def solve_batch(
         np.broadcast_to(first, (len(points), chain.dof)),
         _stop(chain, POSITION, rule, tolerance, 1.0, None, max_iterations),
         rule,
-        random_starts(chain, count("restarts", restarts), seed),
+        random_starts(chain, count("restarts", restarts), count("seed", seed)),
     )
     solve_in_parallel(problem, result, count("workers", workers) if workers is not None else None)
     return result.solutions()
@@ -183,10 +190,11 @@ def solve_path(
         algebra: as for `solve`, like the rest but for the last.
         rule: how an update follows from the error and the Jacobian.
         tolerance: distance below which a target is reached (m).
-        max_iterations: how many updates each target may take.
+        max_iterations: how many updates each solve may take: of a target or, on the way to it, of a piece.
         limits: whether to hold the joint limits.
-        largest_step: no joint moves further than this (rad or m) from one target to the next. What would is solved
-            again in pieces of the straight way between them; where even the smallest jumps, the status is stagnated.
+        largest_step: no joint moves further than this (rad or m) in one solve. A target at which one would is walked
+            to in 2, 4, … 128 pieces of the straight way from the target before; where even of the smallest one jumps,
+            the status is stagnated. So targets that lie close together are as close in the joints.
 
     Returns:
         A Solution of arrays.
@@ -194,6 +202,8 @@ def solve_path(
     Raises:
         GaikError: as for `solve`.
     """
+    if not isinstance(chain, KinematicChain):
+        raise _no_chain(chain)
     points = rows("targets", targets, 3)
     first = finite_vector("start", chain.home if start is None else start, chain.dof)
     result = BatchResult.of(len(points), chain.dof)
@@ -209,13 +219,13 @@ def solve_path(
 
 @lru_cache(maxsize=64)
 def random_starts(chain: KinematicChain, count: int, seed: int) -> Array:
-    """Angles (count, dof) drawn evenly from inside the limits, or from a turn either way where there are none.
+    """Angles (count, dof) drawn evenly from inside the limits; where one is missing, from a turn beside the other.
 
     Kept, and so read-only: a solve that needs no restart does not pay for drawing them.
     """
-    low = np.where(np.isfinite(chain.lower), chain.lower, -math.pi)
-    high = np.where(np.isfinite(chain.upper), chain.upper, math.pi)
-    low, high = np.minimum(low, high), np.maximum(low, high)
+    turn = 2.0 * math.pi
+    low = np.where(np.isfinite(chain.lower), chain.lower, np.minimum(-math.pi, chain.upper - turn))
+    high = np.where(np.isfinite(chain.upper), chain.upper, np.maximum(math.pi, chain.lower + turn))
     starts = np.random.default_rng(seed).uniform(low, high, (count, chain.dof))
     starts.flags.writeable = False
     return starts
@@ -229,7 +239,10 @@ def _solve_traced(
         raise GaikError(f"restarts is {restarts}; expected 0 with trace=True, as a trace is of one descent")
     if posture is not None:
         raise GaikError(f"posture is {posture}; expected None with trace=True, as a trace is of one descent")
-    trace_angles, trace_errors = np.empty((most + 1, len(angles))), np.empty((most + 1, 2))
+    try:
+        trace_angles, trace_errors = np.empty((most + 1, len(angles))), np.empty((most + 1, 2))
+    except (MemoryError, ValueError):
+        raise GaikError(f"max_iterations is {most}; there is no memory for a trace of so many") from None
     status, iterations, error, turn = solve_packed_with_trace(
         packed, target, angles, trace_angles, trace_errors
     )
@@ -238,6 +251,11 @@ def _solve_traced(
     made = slice(iterations + 1)
     kept = Trace(trace_angles[made].copy(), trace_errors[made, 0].copy(), trace_errors[made, 1].copy())
     return Solution(angles, error, iterations, status == kernels.CONVERGED, STATUS[status], kept, turn)
+
+
+def _no_chain(what: object) -> GaikError:
+    load = f"; load one with KinematicChain.load({what!r})" if isinstance(what, str) else ""
+    return GaikError(f"chain is {what!r}; expected a KinematicChain{load}")
 
 
 def _raise_not_finite(target: Array, start: Array) -> None:
@@ -278,14 +296,16 @@ def _stop(
     orientation_weight: float | None,
     max_iterations: int,
 ) -> kernels.Stop:
-    """What ends a descent."""
+    """What ends a descent; checks the rule too, which says when it is stuck."""
+    if not isinstance(rule, UpdateRule):
+        raise GaikError(f"rule is {rule!r}; expected an update rule, such as LevenbergMarquardt()")
     weight = 1.0 if kind == POSITION else _weight(chain, orientation_weight)
     return (
         positive("tolerance", tolerance),
         positive("orientation_tolerance", orientation_tolerance),
         weight,
         rule.window,
-        count("max_iterations", max_iterations),
+        min(count("max_iterations", max_iterations), MOST_ITERATIONS),
     )
 
 
@@ -293,4 +313,4 @@ def _weight(chain: KinematicChain, given: float | None) -> float:
     """Metres that one radian counts for."""
     if given is not None:
         return positive("orientation_weight", given)
-    return 1.0 if math.isinf(chain.reach) else chain.reach / math.pi
+    return chain.reach / math.pi if 0.0 < chain.reach < math.inf else 1.0

@@ -7,8 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from gaik_core.checks import copied_vector, finite_vector
-from gaik_core.errors import GaikError
+from gaik_core.checks import copied_vector, finite_vector, unit_vector
 from gaik_core.kernels.task import POINTING, POSE, POSITION
 from gaik_core.versors import Motor
 
@@ -34,8 +33,8 @@ class Pointing:
         return np.concatenate(
             [
                 finite_vector("position", self.position, 3),
-                _unit("direction", self.direction, 3),
-                _unit("tool_axis", self.tool_axis, 3),
+                unit_vector("direction", self.direction, 3),
+                unit_vector("tool_axis", self.tool_axis, 3),
             ]
         )
 
@@ -57,7 +56,7 @@ class Pose:
         return np.concatenate(
             [
                 finite_vector("position", self.position, 3),
-                _unit("orientation", self.orientation, 4),
+                unit_vector("orientation", self.orientation, 4),
             ]
         )
 
@@ -75,12 +74,3 @@ def pack_target(target: Target) -> tuple[int, Array]:
     if isinstance(target, Motor):
         target = Pose(target.translation, target.rotation)
     return POSE, target.packed()
-
-
-def _unit(what: str, value: ArrayLike, length: int) -> Array:
-    array = finite_vector(what, value, length)
-    norm = float(np.linalg.norm(array))
-    if norm == 0.0:
-        raise GaikError(f"{what} is {array.tolist()}; expected anything but zero")
-    result: Array = array / norm
-    return result

@@ -64,6 +64,8 @@ class UrdfTree:
 
     def check_link(self, what: str, link: str) -> None:
         """Raise UrdfError where there is no such link."""
+        if not isinstance(link, str):
+            raise self.error(f"{what} is {link!r}; expected the name of a link")
         if link not in self.links:
             raise self.error(f"{what}: no link {link!r}{_hint(link, self.links)}")
 
@@ -169,6 +171,8 @@ def _parse(source: str, content: str | bytes) -> Any:
         raise UrdfError(f"{source}: the root element is <{root.tag}>; a URDF's is <robot>")
     try:
         return URDF.from_xml(_kinematic_part(source, root), ElementPath("robot"))
+    except UrdfError:
+        raise
     except ParseError as error:
         raise UrdfError(f"{source}: {error.path}: {error.e}") from None
     except Exception as error:  # the reader raises bare Exception, and AssertionError, on bad input

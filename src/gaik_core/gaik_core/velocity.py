@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from gaik_core.chain import KinematicChain
-from gaik_core.checks import finite_vector
+from gaik_core.checks import finite_vector, positive
 from gaik_core.errors import GaikError
 
 Array = NDArray[np.float64]
@@ -30,13 +30,18 @@ def damped_pseudo_inverse(jacobian: Array, damping: float | None = None) -> Arra
         floor = NEAR_SINGULAR * sigma[0]
         gains = np.zeros_like(sigma)
         np.divide(sigma, np.maximum(sigma, floor) ** 2, out=gains, where=sigma > 0.0)
-    elif damping >= 0.0:
-        gains = np.zeros_like(sigma)
-        np.divide(sigma, sigma**2 + damping**2, out=gains, where=sigma > 0.0)
     else:
-        raise GaikError(f"damping is {damping}; expected a number of at least 0, in m")
+        damping = _damping(damping)
+        gains = np.zeros_like(sigma)
+        np.divide(sigma, sigma**2 + damping * damping, out=gains, where=sigma > 0.0)
     result: Array = (vt.T * gains) @ u.T
     return result
+
+
+def _damping(given: float) -> float:
+    if isinstance(given, int | float | np.integer | np.floating) and 0.0 <= given < np.inf:
+        return float(given)
+    raise GaikError(f"damping is {given!r}; expected a finite number of at least 0, in m")
 
 
 def gradient_velocity(
@@ -45,7 +50,11 @@ def gradient_velocity(
     """Joint rates β 𝓛 J (dof,) in rad/s toward a target position (3,) in m (eq. 38), with β in 1/(m²·s).
 
     β = α/Δt makes one step of eq. 34 out of one period Δt. Its argument is a position error, not a velocity.
+
+    Raises:
+        GaikError: a β that is not above 0 and finite, or arguments that do not fit the chain.
     """
+    beta = positive("beta", beta)
     error = finite_vector("target", target, 3) - chain.forward(angles, algebra)
     result: Array = beta * (error @ chain.jacobian(angles, algebra))
     return result

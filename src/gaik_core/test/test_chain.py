@@ -156,16 +156,18 @@ class TestBadArguments:
         with pytest.raises(GaikError, match=message):
             KinematicChain(joints)
 
-    @pytest.mark.parametrize(
-        ("fields", "message"),
-        [
-            ({"axis": (0, 0, 0)}, "axis is"),
-            ({"axis": (0, np.nan, 1)}, "axis is"),
-            ({"axis": (0, 0, 1), "lower": 1.0, "upper": -1.0}, "limits are"),
-            ({"axis": (0, 0, 1), "axis_lower": 1.0, "axis_upper": -1.0}, "axis_limits are"),
-            ({"axis": (0, 0, 1), "lower": 1.0, "upper": 2.0}, "home is 0; expected within its limits"),
-        ],
-    )
-    def test_impossible_joints(self, fields, message):
-        with pytest.raises(ValueError, match=message):
-            Joint("a", **fields)
+    @pytest.mark.parametrize("angles", [1.0, [1.0], np.zeros((2, 4))])
+    def test_axis_angles_name_the_shape(self, angles):
+        with pytest.raises(ShapeError, match=r"angles has shape .*; expected \(…, 3\)"):
+            self.touch.axis_angles(angles)
+
+    def test_what_is_no_joint_and_no_orientation(self):
+        with pytest.raises(GaikError, match="a joint is 'elbow'; expected a Joint"):
+            KinematicChain(["elbow"])
+        with pytest.raises(GaikError, match=r"orientation is .*; expected anything but zero"):
+            KinematicChain([Joint("a", (0, 0, 1))], orientation=(0, 0, 0, 0))
+
+    @pytest.mark.parametrize("robot", [None, 3, ["touch"]])
+    def test_what_is_no_name_of_a_robot(self, robot):
+        with pytest.raises(UnknownRobotError, match=r"unknown robot .*known: .*touch"):
+            KinematicChain.load(robot)

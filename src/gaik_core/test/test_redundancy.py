@@ -84,8 +84,22 @@ def test_a_motor_is_a_pose(rule):
     assert np.allclose(by_motor.angles, by_pose.angles, atol=1e-9)
 
 
-def test_bad_postures_are_named():
-    target = ARM.forward(START)
+def test_no_solve_ends_further_from_the_posture_for_having_preferred_it():
+    """Of many solves, as bringing the tip back after a step undoes what was won only now and then."""
+    chain, rule = KinematicChain.load("planar4"), LevenbergMarquardt()
+    rng = np.random.default_rng(3)
+    for angles, posture in rng.uniform(-1.5, 1.5, (200, 2, 4)):
+        target = chain.forward(angles)
+        alone = solve(chain, target, rule=rule, tolerance=1e-4)
+        preferring = solve(chain, target, rule=rule, tolerance=1e-4, posture=posture, max_iterations=300)
+        if alone.converged:
+            apart = [np.linalg.norm(end.angles - posture) for end in (alone, preferring)]
+            assert preferring.converged and apart[1] <= apart[0] + 1e-12
+            assert preferring.iterations <= 300
+
+
+@pytest.mark.parametrize("target", [ARM.forward(START), [90.0, 0.0, 0.0]], ids=["reached", "out of reach"])
+def test_bad_postures_are_named(target):
     with pytest.raises(ShapeError, match=r"posture has shape \(2,\); expected \(7,\)"):
         solve(ARM, target, START, posture=[0, 0])
     with pytest.raises(NotFiniteError, match="posture"):

@@ -19,6 +19,7 @@ from gaik_core import (
 )
 from gaik_core.errors import GaikError, NotFiniteError, ShapeError, UnknownNameError
 from gaik_core.quaternion import rotate
+from gaik_core.solver import random_starts
 
 TOUCH, DEVICE = KinematicChain.load("touch"), KinematicChain.load("touch_device")
 PLANAR, ARM3 = KinematicChain.load("planar2"), KinematicChain.load("arm3")
@@ -282,6 +283,14 @@ class TestRestarts:
         again = solve(chain, targets[0], rule=rule, tolerance=1e-4, restarts=20)
         assert np.array_equal(again.angles, ends[0].angles)
 
+    @pytest.mark.parametrize(("lower", "upper"), [(4.0, np.inf), (-np.inf, -4.0), (-1.0, np.inf)])
+    def test_begin_inside_limits_of_one_side(self, lower, upper):
+        home = min(max(0.0, lower), upper)
+        chain = KinematicChain([Joint("a", (0, 0, 1), (1, 0, 0), lower=lower, upper=upper, home=home)])
+        starts = random_starts(chain, 200, 0)
+        assert (starts >= lower).all() and (starts <= upper).all()
+        assert np.ptp(starts) > 5.0  # of a turn, so that no direction is left out
+
     def test_stay_within_the_budget(self):
         end = solve(PLANAR, [0.05, 0.05, 0.05], restarts=1000, max_iterations=77, rule=LevenbergMarquardt())
         assert end.iterations <= 77 and not end.converged
@@ -307,6 +316,13 @@ class TestBadArguments:
             ({"max_iterations": -1}, GaikError, "max_iterations is -1"),
             ({"max_iterations": 1.5}, GaikError, "max_iterations is 1.5"),
             ({"restarts": -1}, GaikError, "restarts is -1"),
+            ({"restarts": 2, "seed": -1}, GaikError, "seed is -1"),
+            ({"restarts": 2, "seed": [1]}, GaikError, r"seed is \[1\]"),
+            ({"tolerance": np.array([1e-3, 1e-2])}, GaikError, "tolerance is .*; expected a number above 0"),
+            ({"rule": "adam"}, GaikError, "rule is 'adam'; expected an update rule"),
+            ({"rule": LevenbergMarquardt}, GaikError, "rule is .*; expected an update rule"),
+            ({"chain": "touch"}, GaikError, r"chain is 'touch'.*KinematicChain\.load\('touch'\)"),
+            ({"trace": True, "max_iterations": 10**30}, GaikError, "max_iterations is 1000.*no memory"),
             ({"target": Pose([0, 0, 0], [0, 0, 0, 0])}, GaikError, "orientation is"),
             (
                 {"target": Pose([0, 0, 0]), "orientation_tolerance": 0},
@@ -319,9 +335,9 @@ class TestBadArguments:
         ],
     )
     def test_are_named(self, changes, error, message):
-        arguments = {"target": [0, 0, 0], **changes}
+        arguments = {"chain": TOUCH, "target": [0, 0, 0], **changes}
         with pytest.raises(error, match=message):
-            solve(TOUCH, **arguments)
+            solve(**arguments)
 
     def test_zero_iterations_are_allowed(self):
         end = solve(TOUCH, [0.05, 0.05, 0.0], max_iterations=0)

@@ -66,5 +66,9 @@ def test_bad_arguments_are_named():
         TOUCH.inverse_velocity(REGULAR, [0, 0])
     with pytest.raises(NotFiniteError, match="velocity"):
         TOUCH.inverse_velocity(REGULAR, [0, np.nan, 0])
-    with pytest.raises(GaikError, match="damping is -1"):
-        TOUCH.inverse_velocity(REGULAR, [0, 0, 0], damping=-1)
+    for damping in (-1, np.nan, np.inf, "x"):
+        with pytest.raises(GaikError, match=f"damping is {damping!r}; expected"):
+            TOUCH.inverse_velocity(REGULAR, [0, 0, 0], damping=damping)
+    for beta in (0.0, np.nan, "x", None):
+        with pytest.raises(GaikError, match=f"beta is {beta!r}; expected a number above 0"):
+            gradient_velocity(TOUCH, REGULAR, [0, 0, 0], beta)
