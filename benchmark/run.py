@@ -90,12 +90,19 @@ def _arguments() -> argparse.Namespace:
         "--no-write", dest="output", action="store_const", const=None, help="print the page only"
     )
     arguments = parser.parse_args()
-    if arguments.quick:
-        arguments.rounds, arguments.budget, arguments.batch, arguments.output = 3, 0.1, 2000, None
     if arguments.rounds < 1 or arguments.budget <= 0 or arguments.batch < 1:
         parser.error("--rounds, --budget and --batch must be above 0")
+    known = [" ".join(entry) for entry in (*PEERS, *BATCH_PEERS)]
+    for word in arguments.peers or ():
+        if not any(word.lower() in name.lower() for name in known):
+            parser.error(f"--peers: no peer's name contains {word!r}; the peers: {', '.join(known)}")
+    if arguments.quick:
+        arguments.rounds, arguments.budget, arguments.batch, arguments.output = 3, 0.1, 2000, None
     return arguments
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    try:
+        sys.exit(main())
+    except KeyboardInterrupt:
+        sys.exit(130)  # 128 + SIGINT

@@ -7,6 +7,7 @@ import sys
 
 import rclpy
 from geometry_msgs.msg import Point
+from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
 
 SIDE, SECONDS = 0.06, 8.0  # m, for one lap
@@ -37,7 +38,7 @@ rclpy.init(args=sys.argv)
 square = Square()
 try:
     rclpy.spin(square)
-except (KeyboardInterrupt, SystemExit):
+except (KeyboardInterrupt, SystemExit, ExternalShutdownException):
     print(f"{square.sent} setpoints sent")
 finally:
     rclpy.try_shutdown()

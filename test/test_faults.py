@@ -90,6 +90,8 @@ def test_the_list_names_every_fault():
             ["nan_setpoint", "--namespace", "nobody"],
             "no service /nobody/ik_node/get_parameters.*--start-suite",
         ),
+        (["nan_setpoint", "--namespace", "bad ns"], "bad ns"),
+        (["nan_setpoint", "--start-suite", "--write", "/proc/x"], "--write: /proc/x cannot be written"),
     ],
 )
 def test_a_wrong_argument_is_one_line_and_exit_code_2(arguments, complaint):
@@ -102,11 +104,24 @@ def test_a_wrong_argument_is_one_line_and_exit_code_2(arguments, complaint):
 def test_against_a_running_suite_it_plays_what_can_be_played():
     with suites(SuiteOptions(namespace="left", rate=200.0)):
         played = inject("nan_setpoint", "bad_parameters", "--namespace", "left")
-        impossible = inject("kill_ik_node", "--namespace", "left")
+        impossible = inject("bad_parameters", "kill_ik_node", "--namespace", "left")
+        silent = inject("states_nan", "--namespace", "left", "--cable", "nothing/here")
     assert played.returncode == 0, played.stdout + played.stderr
     assert "2 of 2 held" in played.stdout
-    assert impossible.returncode == 2
-    assert "--start-suite" in impossible.stderr
+    for done, reason in (
+        (impossible, "kill_ik_node .*--start-suite"),
+        (silent, "nothing comes on nothing/here"),
+    ):
+        assert (done.returncode, done.stdout) == (2, "")  # before any is played
+        assert re.search(reason, done.stderr)
+
+
+def test_it_does_not_fight_for_the_arm_with_who_sends_setpoints_already():
+    with suites(SuiteOptions(namespace="right", rate=200.0)) as (user,):
+        user.start("circle")
+        done = inject("nan_setpoint", "--namespace", "right")
+    assert (done.returncode, done.stdout) == (2, "")
+    assert "setpoints come from trajectory_publisher: stop them first" in done.stderr
 
 
 def test_the_page_has_every_fault_and_none_was_broken():

@@ -214,7 +214,16 @@ def _is_finite(value: Any) -> bool:
 
 
 class _Loader(yaml.SafeLoader):
-    """PyYAML follows YAML 1.1, which takes 1e-3 for a text; this one takes it for a number."""
+    """PyYAML follows YAML 1.1, which takes 1e-3 for a text; this one takes it for a number, and no key twice."""
+
+    def construct_mapping(self, node: yaml.MappingNode, deep: bool = False) -> dict[Any, Any]:
+        keys = [key.value for key, _ in node.value]
+        for place, key in enumerate(keys):
+            if key in keys[:place]:
+                raise yaml.constructor.ConstructorError(
+                    None, None, f"the key {key!r} stands there twice", node.value[place][0].start_mark
+                )
+        return super().construct_mapping(node, deep)
 
 
 _Loader.add_implicit_resolver(

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gaik_core.chain import KinematicChain
+from gaik_core.checks import count
 from gaik_core.errors import GaikError
 from gaik_core.solver import solve_batch
 from gaik_core.update_rules import LevenbergMarquardt
@@ -110,7 +111,7 @@ def find_workspace(
     for what, value, least in (("cells", cells, 4), ("samples", samples, 100)):
         if value < least:
             raise GaikError(f"{what} is {value}; it may be {least} or more")
-    values = sample_joints(chain, samples, seed)
+    values = sample_joints(chain, samples, count("seed", seed))
     tips = chain.forward(values)
     extent = np.ptp(tips, axis=0)
     thick = extent > FLAT * max(float(extent.max()), FLAT)

@@ -56,6 +56,7 @@ def test_a_path_loads_and_gives_its_name_to_a_nameless_robot(tmp_path):
         ("", "is missing; expected a mapping with the keys name"),
         ("3", "is 3; expected a mapping"),
         ("a: [", r"line \d.*not YAML"),
+        ("name: x\nname: y", "line 2.*the key 'name' stands there twice"),
         ("joints: []", r"joints: is \[\]; expected a list of at least one joint"),
         ("joints: 3", "joints: is 3; expected a list"),
         ("name: x", "joints: is missing"),

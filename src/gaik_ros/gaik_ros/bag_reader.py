@@ -26,6 +26,13 @@ def read_bag(path: Path, namespace: str | None = None) -> Recording:
 
     if not path.exists():
         raise BagError(f"{path}: there is no such bag")
+    if path.is_dir() and not (path / "metadata.yaml").is_file():
+        unclosed = (
+            " (it was not closed: `mcap recover` mends the .mcap file in it)"
+            if any(path.glob("*.mcap"))
+            else ""
+        )
+        raise BagError(f"{path}: is no bag, as it has no metadata.yaml{unclosed}")
     try:
         with Reader(path) as reader:
             topics = _topics(path, reader.connections, namespace)

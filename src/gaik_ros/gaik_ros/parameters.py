@@ -114,7 +114,8 @@ class Parameter:
 
     def _check_number(self, number: float) -> None:
         if not math.isfinite(number):
-            raise self._error(number, f"it may be {self.range_text or 'any finite number'}")
+            bounds = f" {self.range_text}" if self.range_text else ""
+            raise self._error(number, f"it may be a finite number{bounds}")
         if self.lower is not None and number < self.lower:
             raise self._error(number, f"it may be {self.range_text}")
         if self.upper is not None and number > self.upper:

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from rclpy.clock import Clock, ClockType
+from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 
@@ -74,13 +75,13 @@ class Record(Node):
         self._seen: set[str] = set()
         self._unknown: set[str] = set()
         self._closed = False
+        self._wanted = {self._resolved(name) for name in self.values.topics if name not in ("", ALL)}
         self._writer = BagWriter(Path(self.values.bag or f"run_{datetime.now():%Y-%m-%d_%H-%M-%S}"))
         for topic, type_name in SUITE.items():
             self._subscribe(self.resolve_topic_name(topic), type_name, *_usual(topic))
         for topic, type_name in DESKTOP.items():
             with contextlib.suppress(ValueError):
                 self._subscribe(self.resolve_topic_name(topic), type_name, *_usual(topic))
-        self._wanted = {self.resolve_topic_name(name) for name in self.values.topics if name not in ("", ALL)}
         self._all = ALL in self.values.topics
         steady = Clock(clock_type=ClockType.STEADY_TIME)
         self.create_timer(WRITE, self._write, clock=steady)
@@ -93,6 +94,13 @@ class Record(Node):
     def counts(self) -> dict[str, int]:
         """How many messages of each topic have been written."""
         return dict(self._writer.counts)
+
+    def _resolved(self, topic: str) -> str:
+        try:
+            return str(self.resolve_topic_name(topic))
+        except rclpy_implementation.RCLError:
+            wanted = list(self.values.topics)
+            raise ValueError(f"parameter 'topics' is {wanted}: {topic!r} is no name of a topic") from None
 
     def _subscribe(
         self,

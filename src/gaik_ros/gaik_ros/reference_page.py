@@ -29,8 +29,9 @@ INTRODUCTION = """\
 Made from the tables in the code by `python -m gaik_ros.reference_page touch_sim.touch_sim_node > docs/nodes.md`.
 
 An integer is taken where a double is wanted. A bad value at the start ends the node with one line and the exit code
-2; a bad change of a running node is refused whole, and the old values stay in force. "One for each joint" takes one
-number, or a list in the order of the joints. Read-only parameters are set at the start.
+2; a bad change of a running node is refused, and the old value stays in force. Of several that are set at once,
+atomically, none is taken where one is bad. "One for each joint" takes one number, or a list in the order of the joints.
+Read-only parameters are set at the start.
 """
 
 FILE_INTRODUCTION = """\

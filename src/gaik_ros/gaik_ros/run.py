@@ -15,7 +15,7 @@ from types import FrameType
 
 import rclpy
 from rclpy.context import Context
-from rclpy.exceptions import NameValidationException
+from rclpy.exceptions import InvalidParameterTypeException, NameValidationException
 from rclpy.executors import Executor, ExternalShutdownException, SingleThreadedExecutor
 from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.node import Node
@@ -35,6 +35,8 @@ SWITCH_INTERVAL = (
 BAD_ARGUMENTS = 2  # exit code for a mistake of the user
 
 _ROS_ARGUMENT_ERRORS = (
+    NameValidationException,
+    InvalidParameterTypeException,  # of the parameters that rclpy itself declares, such as use_sim_time
     rclpy_implementation.RCLInvalidROSArgsError,
     rclpy_implementation.UnknownROSArgsError,
     rclpy_implementation.RCLError,
@@ -195,7 +197,7 @@ def run(
             rclpy.init(args=arguments, signal_handler_options=SignalHandlerOptions.NO)
             _refuse_stray(arguments)
             node = factory()
-        except (ValueError, NameValidationException, *_ROS_ARGUMENT_ERRORS) as error:
+        except (ValueError, *_ROS_ARGUMENT_ERRORS) as error:
             rclpy.try_shutdown()
             return _complain(error)
         try:

@@ -130,6 +130,7 @@ class TouchAdapter(Node):
         self.values = table_for(driver).declare(self)
         values = self.values
         self._chain = KinematicChain.load(values.robot)
+        self._refuse_own_topics()
         self._convention = convention_of(values, self._chain)
         self._axes = signed_axes(values.force_axes)
         self._command, self._set_command = command_of(values, self._chain)
@@ -145,6 +146,15 @@ class TouchAdapter(Node):
         self.health = HealthReporter(
             self, values, checks={"driver": self._driver_health, "topics": self._watch.health}
         )
+
+    def _refuse_own_topics(self) -> None:
+        """ValueError: the driver's topics are the suite's, so that this node would hear itself."""
+        for parameter, own in (("state_topic", "joint_states"), ("command_topic", "joint_command")):
+            if self.resolve_topic_name(self.values[parameter]) == self.resolve_topic_name(own):
+                raise ValueError(
+                    f"parameter '{parameter}' is {self.values[parameter]!r}: it may be any topic but {own}, which is "
+                    "the suite's own"
+                )
 
     def _connect(self) -> None:
         values = self.values
@@ -248,9 +258,9 @@ class TouchAdapter(Node):
 
 def convention_of(values: ParameterSet, chain: KinematicChain) -> JointConvention:
     """The driver's joint angles from the parameters. ValueError: they do not fit the chain."""
-    if len(values.joint_names) != chain.dof:
+    if len(set(values.joint_names)) != chain.dof or len(values.joint_names) != chain.dof:
         raise ValueError(
-            f"parameter 'joint_names' is {list(values.joint_names)}: it may be {chain.dof} names, of "
+            f"parameter 'joint_names' is {list(values.joint_names)}: it may be {chain.dof} different names, of "
             f"{', '.join(chain.joint_names)}"
         )
     offsets = values.per_joint("joint_offsets", chain.joint_names)

@@ -16,7 +16,7 @@ from gaik_ros import qos
 from gaik_ros.conversions import array_to_point
 from gaik_ros.deadline_loop import DeadlineLoop
 from gaik_ros.health import LOOP_PARAMETERS, OK, Health, HealthReporter
-from gaik_ros.parameters import Parameter, ParameterSet, ParameterTable
+from gaik_ros.parameters import Parameter, ParameterError, ParameterSet, ParameterTable
 from gaik_ros.point_file import read_points
 from gaik_ros.run import run
 from gaik_ros.trajectory import Trajectory, along_path, through_points
@@ -58,6 +58,10 @@ TABLE = ParameterTable(
 def trajectory_of(values: ParameterSet) -> Trajectory:
     """The trajectory that the parameters describe. PointFileError: the file is no list of points."""
     if values.path == POINTS:
+        if not values.file:
+            raise ParameterError(
+                "parameter 'file' is '': the path points needs a CSV file with the columns x, y, z"
+            )
         return through_points(read_points(values.file), values.rate)
     path: Path
     if values.path == CIRCLE:

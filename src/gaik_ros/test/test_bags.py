@@ -282,3 +282,5 @@ def test_bad_bags_and_options_are_answered_in_one_line(capsys, tmp_path):
     half = tmp_path / "half.mcap"
     half.write_bytes((good / "good.mcap").read_bytes()[:5000])
     fails(capsys, ["plot", half], "half.mcap", "mcap recover")
+    (good / "metadata.yaml").unlink()  # as of a recorder that was killed
+    fails(capsys, ["plot", good], "good: is no bag, as it has no metadata.yaml", "mcap recover")

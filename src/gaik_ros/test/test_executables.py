@@ -77,6 +77,26 @@ def test_a_signal_before_the_node_is_up_leaves_no_traceback():
         ("pid_controller", ["-p", "rate:=0"], "'rate' is 0.0: it may be from 1 to 10000 Hz"),
         ("pid_controller", ["-p", "dof_names:=[a, a]"], "'dof_names'"),
         ("trajectory_publisher", ["-p", "path:=points", "-p", "file:=/no.csv"], "/no.csv cannot be read"),
+        ("pid_controller", ["-p", "gains.p:=.inf"], "'gains.p' is inf: it may be a finite number at least 0"),
+        ("ik_node", ["-p", "use_sim_time:=maybe"], "use_sim_time.*maybe"),
+        ("trajectory_publisher", ["-p", "path:=points"], "'file' is '': the path points needs a CSV file"),
+        ("record", ["-p", "topics:=['two words']"], "'topics' is .*: 'two words' is no name of a topic"),
+        (
+            "touch_adapter",
+            ["-p", "driver:=own", "-p", "state_topic:=joint_states"],
+            "'state_topic' is 'joint_states': it may be any topic but joint_states",
+        ),
+        (
+            "touch_adapter",
+            ["-p", "driver:=own", "-p", "command_topic:=/joint_command"],
+            "'command_topic' is '/joint_command': it may be any topic but joint_command",
+        ),
+        (
+            "touch_adapter",
+            ["-p", "driver:=own", "-p", "joint_names:=[a, b, b]"],
+            "'joint_names' is .*3 different names",
+        ),
+        ("touch_adapter", ["-p", "driver:=own", "-p", "joint_signs:=[1, 1]"], "joint_signs is .*3 numbers"),
         ("trajectory_publisher", ["-p", "path:=square"], "one of circle, lemniscate, points"),
     ],
 )

@@ -131,6 +131,14 @@ def test_a_bag_that_is_there_is_refused_in_one_line(tmp_path):
     assert "exists already" in said
 
 
+def test_a_topic_that_cannot_be_leaves_no_folder_in_the_way_of_the_next_try(context, tmp_path):
+    with pytest.raises(ValueError, match="'two words' is no name of a topic"):
+        Record(
+            context=context, parameter_overrides=overrides(bag=str(tmp_path / "run"), topics=["two words"])
+        )
+    assert not list(tmp_path.iterdir())
+
+
 def test_what_cannot_be_written_is_named(tmp_path):
     (tmp_path / "run").write_text("a file")
     process = start(tmp_path / "run")

@@ -17,7 +17,7 @@ from std_srvs.srv import Trigger
 from gaik_core import KinematicChain
 from gaik_ros.conversions import joint_state
 from gaik_ros.run import running
-from touch_sim.touch_sim_node import TouchSim
+from touch_sim.touch_sim_node import TABLE, TouchSim
 
 NAMES = ("waist", "shoulder", "elbow")
 START = [0.1, 0.5, 0.7]
@@ -208,6 +208,7 @@ def test_an_encoder_reads_whole_counts(make):
     [
         ("robot:=tuch", "unknown robot 'tuch'"),
         ("start:=[2.0,0.5,0.5]", "joint waist is at 2 rad"),
+        ("start:=[1,2]", ": parameter 'start' has 2 values"),
         ("gain:=-1", "'gain' is -1"),
         ("encoder.noise:=.nan", "'encoder.noise' is nan"),
     ],
@@ -218,3 +219,10 @@ def test_a_mistake_is_one_line_and_exit_code_2(argument, words):
     assert done.returncode == 2, done.stderr
     assert words in done.stderr
     assert len(done.stderr.strip().splitlines()) == 1
+
+
+def test_help_names_every_parameter():
+    command = [sys.executable, "-m", "touch_sim.touch_sim_node", "--help"]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert all(f"  {row.name}\n" in done.stdout for row in TABLE.parameters)

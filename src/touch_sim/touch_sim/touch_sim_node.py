@@ -112,8 +112,8 @@ class TouchSim(Node):
     def _start(self, values: ParameterSet) -> Array:
         if values.start is None:
             return self.chain.home
+        start = np.array(values.per_joint("start", self._names))
         try:
-            start = np.array(values.per_joint("start", self._names))
             JointLimits.of_chain(self.chain).check(start)
         except ValueError as reason:
             raise ValueError(f"parameter 'start': {reason}") from reason
@@ -188,7 +188,7 @@ class TouchSim(Node):
 
 def main(args: Sequence[str] | None = None) -> int:
     """Entry point of the executable."""
-    return run(TouchSim, args)
+    return run(TouchSim, args, TABLE)
 
 
 if __name__ == "__main__":

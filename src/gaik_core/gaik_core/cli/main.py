@@ -38,6 +38,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except GaikError as error:
         complain(f"gaik: {error}")
         return 2
+    except MemoryError as error:
+        complain(f"gaik: not enough memory: {error}")
+        return 2
     except OSError as error:
         complain(f"gaik: {error.filename or 'input or output'}: {error.strerror or error}")
         return 2

@@ -8,8 +8,11 @@ from __future__ import annotations
 import argparse
 import signal
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
+
+from rclpy.exceptions import NameValidationException
+from rclpy.validate_namespace import validate_namespace
 
 from gaik_core.cli.parser import Parser
 from gaik_ros.faults.catalogue import FAULTS, fault_by_name
@@ -44,7 +47,7 @@ def _arguments(args: Sequence[str] | None) -> argparse.Namespace:
         "--cable",
         default="",
         metavar="TOPIC",
-        help="the device's joint_states come on TOPIC and go through the injector (see the README)",
+        help="the device's joint_states come on TOPIC (by -r joint_states:=TOPIC) and go through the injector",
     )
     parser.add_argument(
         "--write", type=Path, metavar="FILE", help="write the table of docs/faults.md to FILE"
@@ -67,12 +70,19 @@ def _chosen(given: argparse.Namespace) -> list[Fault]:
 
 def _play(given: argparse.Namespace, faults: Sequence[Fault]) -> int:
     namespace = given.namespace or (OWN_NAMESPACE if given.start_suite else "")
+    if namespace:
+        validate_namespace(f"/{namespace.strip('/')}")  # rclpy would say more than one line
     outcomes: list[Outcome] = []
     skipped: dict[str, str] = {}
+    if given.write is not None:
+        _make_sure_of(given.write)
     with rig(namespace, given.start_suite, given.cable) as ours:
+        lacks = {fault.name: ours.lacks(fault) for fault in faults}
+        if not given.all:
+            _refuse(lacks)
         for fault in faults:
-            lack = ours.lacks(fault)
-            if lack and given.all:
+            lack = lacks[fault.name]
+            if lack:
                 skipped[fault.name] = lack
                 print(f"{fault.name}: not played, {lack}", flush=True)
                 continue
@@ -80,11 +90,26 @@ def _play(given: argparse.Namespace, faults: Sequence[Fault]) -> int:
             outcomes.append(outcome)
             print(lines(outcome), flush=True)
     if given.write is not None:
-        given.write.parent.mkdir(parents=True, exist_ok=True)
         given.write.write_text(page(outcomes, skipped))
     held = sum(outcome.holds for outcome in outcomes)
     print(f"{held} of {len(outcomes)} held" + (f", {len(skipped)} not played" if skipped else ""))
     return HELD if held == len(outcomes) else BROKEN
+
+
+def _make_sure_of(file: Path) -> None:
+    """Make the file now if it is not there: hours later it would be late to hear that it cannot be written."""
+    try:
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.open("a").close()
+    except OSError as reason:
+        raise ValueError(f"--write: {file} cannot be written: {reason.strerror or reason}") from None
+
+
+def _refuse(lacks: Mapping[str, str]) -> None:
+    """Say which of the faults asked for cannot be played, before any is."""
+    for name, lack in lacks.items():
+        if lack:
+            raise StageError(f"{name} cannot be played: {lack}")
 
 
 def main(args: Sequence[str] | None = None) -> int:
@@ -99,8 +124,8 @@ def main(args: Sequence[str] | None = None) -> int:
             signal.SIGTERM, signal.getsignal(signal.SIGINT)
         )  # ends as Ctrl-C does: nothing is left running
         return _play(given, faults)
-    except (StageError, ValueError) as error:
-        print(f"inject: {error}", file=sys.stderr)
+    except (StageError, ValueError, NameValidationException) as error:
+        print(f"inject: {' '.join(str(error).split())}", file=sys.stderr)
         return WRONG
     except KeyboardInterrupt:
         return 128 + signal.SIGINT

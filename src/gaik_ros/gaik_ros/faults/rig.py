@@ -24,6 +24,7 @@ from gaik_ros.run import running
 DEVICE = "touch_sim"
 DISCOVERY = 10.0  # s for nodes that are there to be seen
 STARTING = 60.0  # s for nodes to come up
+LISTENING = 1.0  # s for setpoints of others
 
 
 class Rig:
@@ -118,8 +119,32 @@ def rig(
         remote = Remote(probe)
         stage = Stage(probe, remote, read_facts(remote, STARTING if start_suite else DISCOVERY))
         stage.processes = processes
-        stage.cable = Cable(probe, cable) if cable else None
+        if not start_suite:
+            _refuse_other_setpoints(probe)
+        if cable:
+            stage.cable = _connected(Cable(probe, cable), cable)
         yield Rig(stage, bool(cable))
+
+
+def _refuse_other_setpoints(probe: Probe) -> None:
+    """StageError: somebody else sends setpoints, so that the arm would not go where a fault has it go."""
+    before = probe.mark()
+    time.sleep(LISTENING)
+    if not probe.since(before).count("setpoint"):
+        return
+    infos = probe.get_publishers_info_by_topic("setpoint")
+    others = sorted({info.node_name for info in infos} - {probe.get_name()})
+    raise StageError(
+        f"setpoints come from {', '.join(others) or 'somewhere else'}: stop them first "
+        "(trajectory_publisher has the service ~/stop), so that the arm goes where a fault sends it"
+    )
+
+
+def _connected(cable: Cable, topic: str) -> Cable:
+    """The cable, once something comes through it. StageError: nothing does."""
+    if not wait_until(lambda: cable.newest is not None, DISCOVERY):
+        raise StageError(f"nothing comes on {topic}: start the device with -r joint_states:={topic}")
+    return cable
 
 
 @contextmanager

@@ -136,6 +136,10 @@ class Viewer(Node):
                 raise ViserMissingError from missing
             raise
         self.chain = KinematicChain.load(values.robot)
+        if values.origin_frame and not values.urdf:
+            raise ValueError(
+                f"parameter 'origin_frame' is {values.origin_frame!r}: it names a link of a URDF, and 'urdf' is empty"
+            )
         shapes = UrdfShapes(values.urdf) if values.urdf else None
         self._names = list(self.chain.joint_names)
         self._nodes = NodeNames(
