@@ -53,12 +53,13 @@ def make_executor(context: Context | None = None) -> Executor:
 
 
 class Runner:
-    """Spins nodes and runs their loops until `stop`; `stop` may be called from a signal handler."""
+    """Spins nodes and runs their loops until `stop`, or `ask_to_stop` from a signal handler."""
 
     def __init__(self, nodes: Sequence[Node], context: Context | None = None) -> None:
         self._nodes = list(nodes)
         self._context = context or get_default_context()
         self._executor = make_executor(self._context)
+        self._asked = False
         self._stopped = Future(executor=self._executor)
         loops = [loop for loop in (getattr(node, "loop", None) for node in nodes) if loop is not None]
         self._loops = LoopThread(
@@ -69,9 +70,17 @@ class Runner:
         self.stop()
 
     def stop(self) -> None:
-        """Ask `spin` to return."""
+        """Have `spin` return at once; not for a signal handler."""
+        self._asked = True
         if not self._stopped.done():
             self._stopped.set_result(None)
+
+    def ask_to_stop(self) -> None:
+        """Have `spin` return within WAKE s.
+
+        For signal handlers: it takes no lock, as the thread that they interrupt may be the one that holds it.
+        """
+        self._asked = True
 
     def spin(self) -> None:
         """Spin until `stop` or until the context is shut down. Raises what a loop's tick raised."""
@@ -82,7 +91,7 @@ class Runner:
         self._loops.start()
         try:
             with contextlib.suppress(ExternalShutdownException):
-                while self._context.ok() and not self._stopped.done():
+                while self._context.ok() and not self._asked:
                     # Without a timeout the events executor burns a core and fires nothing.
                     self._executor.spin_until_future_complete(self._stopped, timeout_sec=WAKE)
         finally:
@@ -126,7 +135,7 @@ def running(nodes: Sequence[Node], context: Context | None = None) -> Iterator[R
 
 
 class StopRequest:
-    """A wish to stop, which may come before there is anything to stop."""
+    """A wish to stop from a signal handler, which may come before there is anything to stop."""
 
     def __init__(self) -> None:
         self._made = False
@@ -136,13 +145,13 @@ class StopRequest:
         """Ask for the stop."""
         self._made = True
         if self._runner is not None:
-            self._runner.stop()
+            self._runner.ask_to_stop()
 
     def serve(self, runner: Runner) -> None:
         """Stop `runner` when asked to, or now if that has been."""
         self._runner = runner
         if self._made:
-            runner.stop()
+            runner.ask_to_stop()
 
 
 def spin_together(nodes: Sequence[Node], context: Context | None = None) -> None:
