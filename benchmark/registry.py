@@ -47,11 +47,16 @@ class Field:
     missing: dict[str, str] = field(default_factory=dict)
 
 
+def is_named(entry: tuple[str, str], word: str) -> bool:
+    """Whether the module or the class of an entry contains a word."""
+    return word.lower() in " ".join(entry).lower()
+
+
 def load(entries: tuple[tuple[str, str], ...], only: list[str] | None = None) -> Field:
     """Import (module, class) pairs; `only` keeps those whose module or name contains one of these words."""
     result = Field()
     for module, name in entries:
-        if only and not any(word.lower() in f"{module} {name}".lower() for word in only):
+        if only and not any(is_named((module, name), word) for word in only):
             continue
         try:
             result.classes.append(getattr(importlib.import_module(module), name))

@@ -13,7 +13,7 @@ from algebra_problem import algebra_problem
 from batch import measure_batch
 from measure import measure
 from plots import plot_scaling, plot_tasks
-from registry import BATCH_PEERS, OURS, PACKAGES, PEERS, Field, load
+from registry import BATCH_PEERS, OURS, PACKAGES, PEERS, Field, is_named, load
 from report import Task, page
 from scaling import measure_scaling
 
@@ -92,10 +92,11 @@ def _arguments() -> argparse.Namespace:
     arguments = parser.parse_args()
     if arguments.rounds < 1 or arguments.budget <= 0 or arguments.batch < 1:
         parser.error("--rounds, --budget and --batch must be above 0")
-    known = [" ".join(entry) for entry in (*PEERS, *BATCH_PEERS)]
+    known = (*PEERS, *BATCH_PEERS)
     for word in arguments.peers or ():
-        if not any(word.lower() in name.lower() for name in known):
-            parser.error(f"--peers: no peer's name contains {word!r}; the peers: {', '.join(known)}")
+        if not any(is_named(entry, word) for entry in known):
+            names = ", ".join(" ".join(entry) for entry in known)
+            parser.error(f"--peers: no peer's name contains {word!r}; the peers: {names}")
     if arguments.quick:
         arguments.rounds, arguments.budget, arguments.batch, arguments.output = 3, 0.1, 2000, None
     return arguments

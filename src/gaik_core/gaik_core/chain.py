@@ -74,11 +74,7 @@ class KinematicChain:
             GaikError: where the chain has no joint, two of one name, or a coupling to a joint it has not.
         """
         self.joints = tuple(joints)
-        for joint in self.joints:
-            if not isinstance(joint, Joint):
-                raise GaikError(f"a joint is {joint!r}; expected a Joint")
-        active = [joint for joint in self.joints if not joint.passive]
-        _check_names(self.joints, [joint.name for joint in active])
+        active = _active(self.joints)
         self.name = name
         self.description = description
         self.dof = len(active)
@@ -229,6 +225,16 @@ def _frozen(values: ArrayLike) -> Array:
     array = np.array(values, dtype=float)
     array.flags.writeable = False
     return array
+
+
+def _active(joints: Sequence[Joint]) -> list[Joint]:
+    """Those that have a value; GaikError: what of them makes no chain."""
+    for joint in joints:
+        if not isinstance(joint, Joint):
+            raise GaikError(f"a joint is {joint!r}; expected a Joint")
+    active = [joint for joint in joints if not joint.passive]
+    _check_names(joints, [joint.name for joint in active])
+    return active
 
 
 def _check_names(joints: Sequence[Joint], active: Sequence[str]) -> None:

@@ -67,6 +67,11 @@ def rows(what: str, value: ArrayLike, length: int) -> Array:
     return finite(what, array)
 
 
+def is_number(value: object) -> bool:
+    """Whether a value is a real number, of Python or of NumPy; True and False are none."""
+    return isinstance(value, int | float | np.integer | np.floating) and not isinstance(value, bool)
+
+
 def positive(what: str, value: float) -> float:
     """`value`, a number above 0 and finite."""
     try:

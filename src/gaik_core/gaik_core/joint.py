@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import math
-import numbers
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
 from functools import partial
 from types import MappingProxyType
 from typing import Any, Literal, get_args
 
-from gaik_core.checks import finite_vector, unit_vector
+from gaik_core.checks import finite_vector, is_number, unit_vector
 from gaik_core.errors import GaikError
 
 Vector = tuple[float, float, float]
@@ -55,7 +54,7 @@ class Joint:
         axis = unit_vector(f"joint {self.name!r}: axis", self.axis, 3)
         link = finite_vector(f"joint {self.name!r}: link", self.link, 3)
         for what, number in {"offset": self.offset, "home": self.home, **self._factors()}.items():
-            if not _is_finite(number):
+            if not (is_number(number) and math.isfinite(number)):
                 raise self._error(what, repr(number), "expected a finite number")
         for what, low, high in (
             ("limits", self.lower, self.upper),
@@ -85,7 +84,3 @@ class Joint:
         return GaikError(
             f"joint {self.name!r}: {what} {'are' if what.endswith('s') else 'is'} {was}; {expected}"
         )
-
-
-def _is_finite(value: Any) -> bool:
-    return isinstance(value, numbers.Real) and math.isfinite(value)

@@ -31,6 +31,7 @@ from typing import Any
 import yaml
 
 from gaik_core.chain import KinematicChain
+from gaik_core.checks import is_number
 from gaik_core.errors import RobotFileError, UnknownRobotError
 from gaik_core.joint import KINDS, Joint
 
@@ -93,10 +94,9 @@ def parse_robot(text: str, source: str = "robot file") -> KinematicChain:
     entries = top.get("joints")
     if not isinstance(entries, list) or not entries:
         raise top.error("joints", entries, "a list of at least one joint")
-    joints = [_joint(_Table(entry, source, f"joints[{i}].", JOINT_KEYS)) for i, entry in enumerate(entries)]
     try:
         return KinematicChain(
-            joints,
+            [_joint(_Table(entry, source, f"joints[{i}].", JOINT_KEYS)) for i, entry in enumerate(entries)],
             name=top.text("name", Path(source).stem),
             description=top.text("description", ""),
             origin=top.numbers("origin", 3, (0.0, 0.0, 0.0)),
@@ -117,16 +117,13 @@ def _joint(table: _Table) -> Joint:
     home = table.number("home", min(max(0.0, lower), upper))
     if not lower <= home <= upper:
         raise table.error("home", home, f"a number within limits [{lower:g}, {upper:g}]")
-    passive = table.flag("passive")
-    if passive and "limits" in table.data:
-        raise table.error("limits", [lower, upper], "none for a passive joint; its axis may have axis_limits")
     return Joint(
         name=table.text("name"),
         kind=kind,
         axis=table.numbers("axis", 3, zero=False),
         link=table.numbers("link", 3, (0.0, 0.0, 0.0)),
         coupling=table.factors("coupling"),
-        passive=passive,
+        passive=table.flag("passive"),
         offset=table.number("offset", 0.0),
         lower=lower,
         upper=upper,
@@ -192,7 +189,7 @@ class _Table:
         if (
             not isinstance(value, list | tuple)
             or len(value) != 2
-            or not all(isinstance(end, int | float) and not isinstance(end, bool) for end in value)
+            or not all(map(is_number, value))
             or not value[0] <= value[1]
             or value[0] == math.inf
             or value[1] == -math.inf
@@ -210,7 +207,7 @@ class _Table:
 
 
 def _is_finite(value: Any) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
+    return is_number(value) and math.isfinite(value)
 
 
 class _Loader(yaml.SafeLoader):

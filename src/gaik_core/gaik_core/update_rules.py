@@ -14,6 +14,7 @@ from typing import Any, ClassVar, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from gaik_core.checks import is_number
 from gaik_core.errors import GaikError, UnknownNameError
 from gaik_core.kernels import rules as kernels
 
@@ -46,8 +47,7 @@ class UpdateRule:
     def _check(self, names: tuple[str, ...], holds: Callable[[Any], bool], expected: str) -> None:
         for name in names:
             value = getattr(self, name)
-            number = isinstance(value, int | float | np.integer | np.floating) and not isinstance(value, bool)
-            if not (number and holds(value)):
+            if not (is_number(value) and holds(value)):
                 raise GaikError(f"{type(self).__name__}: {name} is {value!r}; expected a number {expected}")
 
 

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from gaik_core.chain import KinematicChain
-from gaik_core.checks import finite_vector, positive
+from gaik_core.checks import finite_vector, is_number, positive
 from gaik_core.errors import GaikError
 
 Array = NDArray[np.float64]
@@ -39,7 +39,7 @@ def damped_pseudo_inverse(jacobian: Array, damping: float | None = None) -> Arra
 
 
 def _damping(given: float) -> float:
-    if isinstance(given, int | float | np.integer | np.floating) and 0.0 <= given < np.inf:
+    if is_number(given) and 0.0 <= given < np.inf:
         return float(given)
     raise GaikError(f"damping is {given!r}; expected a finite number of at least 0, in m")
 

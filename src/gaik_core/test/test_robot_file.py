@@ -57,6 +57,11 @@ def test_a_path_loads_and_gives_its_name_to_a_nameless_robot(tmp_path):
         ("3", "is 3; expected a mapping"),
         ("a: [", r"line \d.*not YAML"),
         ("name: x\nname: y", "line 2.*the key 'name' stands there twice"),
+        (
+            "joints: [{name: a, axis: [0, 0, 1]}, "
+            "{name: p, axis: [0, 0, 1], passive: true, coupling: {a: 1}, limits: [-1, 1]}]",
+            r"joint 'p': limits are \[-1, 1\]; a passive joint has no value",
+        ),
         ("joints: []", r"joints: is \[\]; expected a list of at least one joint"),
         ("joints: 3", "joints: is 3; expected a list"),
         ("name: x", "joints: is missing"),

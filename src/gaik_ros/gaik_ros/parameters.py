@@ -259,6 +259,12 @@ def _refuse_unsetting(changes: Sequence[RosParameter], rows: Mapping[str, Parame
             raise ParameterError(f"parameter '{change.name}' cannot be deleted")
 
 
+def check_joint_names(names: Sequence[str]) -> None:
+    """For a parameter's `check`: ValueError where two joints have one name, or one has none."""
+    if len(set(names)) != len(names) or not all(names):
+        raise ValueError("every joint needs a name of its own")
+
+
 def _is_sequence(value: object) -> bool:
     return not isinstance(value, str | bytes) and hasattr(value, "__len__") and hasattr(value, "__iter__")
 

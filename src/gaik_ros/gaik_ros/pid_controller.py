@@ -18,17 +18,12 @@ from gaik_ros.conversions import JointMessageError, fill, joint_state, joint_val
 from gaik_ros.deadline_loop import DeadlineLoop
 from gaik_ros.health import ERROR, LOOP_PARAMETERS, OK, WARN, Health, HealthReporter
 from gaik_ros.joint_control import ON_REFERENCE_TIMEOUT, ControlSettings, JointControl, Mode
-from gaik_ros.parameters import Parameter, ParameterSet, ParameterTable
+from gaik_ros.parameters import Parameter, ParameterSet, ParameterTable, check_joint_names
 from gaik_ros.pid import Gains
 from gaik_ros.run import run
 from gaik_ros.watch import Watch
 
 Array = NDArray[np.float64]
-
-
-def _unique(names: Any) -> None:
-    if len(set(names)) != len(names) or not all(names):
-        raise ValueError("every joint needs a name of its own")
 
 
 _GAINS = (  # field of Gains, name as in ros2_controllers' pid_controller, default, unit, description, lower, upper
@@ -51,7 +46,7 @@ TABLE = ParameterTable(
             "",
             "the joints that are controlled",
             read_only=True,
-            check=_unique,
+            check=check_joint_names,
         ),
         Parameter("rate", 1000.0, "Hz", "rate of the control loop", 1.0, 10_000.0, read_only=True),
         *(

@@ -22,6 +22,7 @@ from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 from rclpy.task import Future
 from rclpy.utilities import get_default_context, remove_ros_args
+from rclpy.validate_namespace import validate_namespace
 
 from gaik_ros.deadline_loop import DeadlineLoop, LoopThread
 from gaik_ros.parameters import ParameterTable
@@ -34,13 +35,19 @@ SWITCH_INTERVAL = (
 
 BAD_ARGUMENTS = 2  # exit code for a mistake of the user
 
-_ROS_ARGUMENT_ERRORS = (
+ROS_ARGUMENT_ERRORS = (
     NameValidationException,
     InvalidParameterTypeException,  # of the parameters that rclpy itself declares, such as use_sim_time
     rclpy_implementation.RCLInvalidROSArgsError,
     rclpy_implementation.UnknownROSArgsError,
     rclpy_implementation.RCLError,
 )
+"""What rclpy raises, beside ValueError, where a user's arguments, parameters or names are wrong."""
+
+
+def check_namespace(namespace: str) -> None:
+    """Raise NameValidationException where it can be none: said here in one line, by a node in several."""
+    validate_namespace(f"/{namespace.strip('/')}")
 
 
 def make_executor(context: Context | None = None) -> Executor:
@@ -206,7 +213,7 @@ def run(
             rclpy.init(args=arguments, signal_handler_options=SignalHandlerOptions.NO)
             _refuse_stray(arguments)
             node = factory()
-        except (ValueError, *_ROS_ARGUMENT_ERRORS) as error:
+        except (ValueError, *ROS_ARGUMENT_ERRORS) as error:
             rclpy.try_shutdown()
             return _complain(error)
         try:

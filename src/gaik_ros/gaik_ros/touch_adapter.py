@@ -27,7 +27,7 @@ from gaik_ros.driver_conventions import JointConvention, signed_axes, tip_force
 from gaik_ros.drivers import DEFAULT, DRIVERS, JOINT_STATE
 from gaik_ros.health import ERROR, OK, WARN, Health, HealthReporter
 from gaik_ros.message_types import message_class
-from gaik_ros.parameters import Parameter, ParameterSet, ParameterTable
+from gaik_ros.parameters import Parameter, ParameterSet, ParameterTable, check_joint_names
 from gaik_ros.run import run
 from gaik_ros.watch import Watch
 
@@ -64,7 +64,12 @@ ROWS = (
         read_only=True,
     ),
     Parameter(
-        "joint_names", ("",), "", "the driver's names of the robot's joints, in its order", read_only=True
+        "joint_names",
+        ("",),
+        "",
+        "the driver's names of the robot's joints, in its order",
+        read_only=True,
+        check=check_joint_names,
     ),
     Parameter("joint_signs", (1.0,), "", "-1 where the driver's angle grows the other way", read_only=True),
     Parameter(
@@ -258,9 +263,9 @@ class TouchAdapter(Node):
 
 def convention_of(values: ParameterSet, chain: KinematicChain) -> JointConvention:
     """The driver's joint angles from the parameters. ValueError: they do not fit the chain."""
-    if len(set(values.joint_names)) != chain.dof or len(values.joint_names) != chain.dof:
+    if len(values.joint_names) != chain.dof:
         raise ValueError(
-            f"parameter 'joint_names' is {list(values.joint_names)}: it may be {chain.dof} different names, of "
+            f"parameter 'joint_names' is {list(values.joint_names)}: it may be {chain.dof} names, of "
             f"{', '.join(chain.joint_names)}"
         )
     offsets = values.per_joint("joint_offsets", chain.joint_names)

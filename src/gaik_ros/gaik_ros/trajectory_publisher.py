@@ -56,7 +56,7 @@ TABLE = ParameterTable(
 
 
 def trajectory_of(values: ParameterSet) -> Trajectory:
-    """The trajectory that the parameters describe. PointFileError: the file is no list of points."""
+    """The trajectory that the parameters describe. ValueError: no file is named, or it is no list of points."""
     if values.path == POINTS:
         if not values.file:
             raise ParameterError(

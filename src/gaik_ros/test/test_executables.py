@@ -94,7 +94,7 @@ def test_a_signal_before_the_node_is_up_leaves_no_traceback():
         (
             "touch_adapter",
             ["-p", "driver:=own", "-p", "joint_names:=[a, b, b]"],
-            "'joint_names' is .*3 different names",
+            "'joint_names' is .*'b', 'b'.*: every joint needs a name of its own",
         ),
         ("touch_adapter", ["-p", "driver:=own", "-p", "joint_signs:=[1, 1]"], "joint_signs is .*3 numbers"),
         ("trajectory_publisher", ["-p", "path:=square"], "one of circle, lemniscate, points"),

@@ -50,11 +50,9 @@ def main(args: Sequence[str] | None = None) -> int:
 def _demonstrate(options: argparse.Namespace, ros_arguments: list[str]) -> int:
     """Run the demo and write what it gave; returns the exit code."""
     import rclpy
-    from rclpy.exceptions import NameValidationException
-    from rclpy.impl.implementation_singleton import rclpy_implementation
     from rclpy.signals import SignalHandlerOptions
-    from rclpy.validate_namespace import validate_namespace
 
+    from gaik_ros.run import ROS_ARGUMENT_ERRORS, check_namespace
     from touch_sim.demo_output import write, write_bag
     from touch_sim.demo_progress import progress_for
     from touch_sim.demo_run import DemoError, run_demo
@@ -65,13 +63,13 @@ def _demonstrate(options: argparse.Namespace, ros_arguments: list[str]) -> int:
     suite = SuiteOptions(**{name: getattr(options, name) for name in SuiteOptions.__dataclass_fields__})
     paths = ("circle", "lemniscate") if options.path == "both" else (options.path,)
     try:
-        validate_namespace("/" + suite.namespace.strip("/"))
+        check_namespace(suite.namespace)
         options.out.mkdir(parents=True, exist_ok=True)
         rclpy.init(args=["demo", *ros_arguments], signal_handler_options=SignalHandlerOptions.NO)
         results = run_demo(suite, paths, options.laps, progress_for(sys.stderr))
     except DemoError as reason:
         return complain("demo", str(reason), FAILED)
-    except (ValueError, OSError, NameValidationException, rclpy_implementation.RCLError) as reason:
+    except (ValueError, OSError, *ROS_ARGUMENT_ERRORS) as reason:
         return complain("demo", str(reason), BAD_OPTION)
     finally:
         rclpy.try_shutdown()

@@ -42,17 +42,14 @@ def main(args: Sequence[str] | None = None) -> int:
 def _view(options: argparse.Namespace, ros_arguments: list[str]) -> int:
     """Run the suite and the viewer until a signal; returns the exit code."""
     import rclpy
-    from rclpy.exceptions import NameValidationException
-    from rclpy.impl.implementation_singleton import rclpy_implementation
     from rclpy.signals import SignalHandlerOptions
-    from rclpy.validate_namespace import validate_namespace
 
-    from gaik_ros.run import Runner, StopRequest, stopped_by_signals
+    from gaik_ros.run import ROS_ARGUMENT_ERRORS, Runner, StopRequest, check_namespace, stopped_by_signals
 
     request = StopRequest()
     with stopped_by_signals(request.make):
         try:
-            validate_namespace("/" + options.namespace.strip("/"))
+            check_namespace(options.namespace)
             rclpy.init(args=["view", *ros_arguments], signal_handler_options=SignalHandlerOptions.NO)
             nodes, address = _nodes(options)
             print(f"The page is at {address}; Ctrl-C ends it.", flush=True)
@@ -62,7 +59,7 @@ def _view(options: argparse.Namespace, ros_arguments: list[str]) -> int:
                 runner.spin()
             finally:
                 runner.destroy()
-        except (ValueError, OSError, NameValidationException, rclpy_implementation.RCLError) as reason:
+        except (ValueError, OSError, *ROS_ARGUMENT_ERRORS) as reason:
             return complain("view", str(reason), BAD_OPTION)
         finally:
             rclpy.try_shutdown()

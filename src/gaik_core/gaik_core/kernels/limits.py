@@ -20,7 +20,7 @@ One is enough unless axes share joints.
 """
 
 OVER = 1.5
-"""By how much more each of those after SWEEPS turns an axis than to its limit: it cuts long ways in narrow corners."""
+"""How many times the way to its limit each round after SWEEPS turns an axis: narrow corners take many rounds else."""
 
 MARGIN = 1e-12
 """An axis within this of its limit (rad) is on it: rounding of a sum of two angles."""

@@ -99,14 +99,11 @@ def suite(arguments: Namespace, chain: Any) -> Iterator[Replayer]:
     """A replayer to the twin's suite, started here, or to the one that is running."""
     try:
         import rclpy
-        from rclpy.exceptions import NameValidationException
-        from rclpy.impl.implementation_singleton import rclpy_implementation as implementation
         from rclpy.node import Node
-        from rclpy.validate_namespace import validate_namespace
     except ImportError as missing:
         raise _cannot(f"it needs ROS 2: {missing}") from None
     from gaik_ros.replayer import Replayer
-    from gaik_ros.run import running
+    from gaik_ros.run import ROS_ARGUMENT_ERRORS, check_namespace, running
 
     namespace = arguments.live if arguments.live is not None else f"gaik_replay_{os.getpid()}"
     context = rclpy.Context()
@@ -114,14 +111,14 @@ def suite(arguments: Namespace, chain: Any) -> Iterator[Replayer]:
     if parameters and arguments.live is not None:
         raise _cannot("--param is for the twin; a running suite has `ros2 param set`")
     try:
-        validate_namespace(f"/{namespace.strip('/')}")
+        check_namespace(namespace)
         rclpy.init(context=context, args=["gaik"])
         nodes = [] if arguments.live is not None else twin(arguments.robot, namespace, context, parameters)
         node = Node("gaik_replay", context=context, namespace=namespace)
         replayer = Replayer(node, chain)
         with running([*nodes, node], context):
             yield replayer
-    except (implementation.RCLError, NameValidationException) as reason:
+    except ROS_ARGUMENT_ERRORS as reason:
         raise _cannot(" ".join(str(reason).split())) from None
     finally:
         rclpy.try_shutdown(context=context)

@@ -8,17 +8,15 @@ from __future__ import annotations
 import argparse
 import signal
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
-
-from rclpy.exceptions import NameValidationException
-from rclpy.validate_namespace import validate_namespace
 
 from gaik_core.cli.parser import Parser
 from gaik_ros.faults.catalogue import FAULTS, fault_by_name
 from gaik_ros.faults.fault import Fault, Outcome, StageError
 from gaik_ros.faults.report import lines, listing, page
 from gaik_ros.faults.rig import rig
+from gaik_ros.run import ROS_ARGUMENT_ERRORS, check_namespace
 
 HELD, BROKEN, WRONG = 0, 1, 2
 OWN_NAMESPACE = "faults"
@@ -70,18 +68,17 @@ def _chosen(given: argparse.Namespace) -> list[Fault]:
 
 def _play(given: argparse.Namespace, faults: Sequence[Fault]) -> int:
     namespace = given.namespace or (OWN_NAMESPACE if given.start_suite else "")
-    if namespace:
-        validate_namespace(f"/{namespace.strip('/')}")  # rclpy would say more than one line
+    check_namespace(namespace)
     outcomes: list[Outcome] = []
     skipped: dict[str, str] = {}
     if given.write is not None:
         _make_sure_of(given.write)
     with rig(namespace, given.start_suite, given.cable) as ours:
-        lacks = {fault.name: ours.lacks(fault) for fault in faults}
         if not given.all:
-            _refuse(lacks)
+            for fault in faults:
+                ours.require(fault)  # before any is played
         for fault in faults:
-            lack = lacks[fault.name]
+            lack = ours.lacks(fault) if given.all else ""
             if lack:
                 skipped[fault.name] = lack
                 print(f"{fault.name}: not played, {lack}", flush=True)
@@ -105,13 +102,6 @@ def _make_sure_of(file: Path) -> None:
         raise ValueError(f"--write: {file} cannot be written: {reason.strerror or reason}") from None
 
 
-def _refuse(lacks: Mapping[str, str]) -> None:
-    """Say which of the faults asked for cannot be played, before any is."""
-    for name, lack in lacks.items():
-        if lack:
-            raise StageError(f"{name} cannot be played: {lack}")
-
-
 def main(args: Sequence[str] | None = None) -> int:
     """Entry point of the executable."""
     given = _arguments(args)
@@ -124,7 +114,7 @@ def main(args: Sequence[str] | None = None) -> int:
             signal.SIGTERM, signal.getsignal(signal.SIGINT)
         )  # ends as Ctrl-C does: nothing is left running
         return _play(given, faults)
-    except (StageError, ValueError, NameValidationException) as error:
+    except (StageError, ValueError, *ROS_ARGUMENT_ERRORS) as error:
         print(f"inject: {' '.join(str(error).split())}", file=sys.stderr)
         return WRONG
     except KeyboardInterrupt:

@@ -52,11 +52,15 @@ class Rig:
     def _sees_twin(self) -> bool:
         return DEVICE in self.stage.present()
 
-    def play(self, fault: Fault) -> Outcome:
-        """Play one fault. StageError: it cannot be played here."""
+    def require(self, fault: Fault) -> None:
+        """Raise StageError where a fault cannot be played against this suite."""
         lack = self.lacks(fault)
         if lack:
             raise StageError(f"{fault.name} cannot be played: {lack}")
+
+    def play(self, fault: Fault) -> Outcome:
+        """Play one fault. StageError: it cannot be played here."""
+        self.require(fault)
         stage = self.stage
         self._revive()
         self._connect(Need.CABLE in fault.needs)
