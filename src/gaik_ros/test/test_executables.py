@@ -96,7 +96,7 @@ def test_a_signal_before_the_node_is_up_leaves_no_traceback():
             ["-p", "driver:=own", "-p", "joint_names:=[a, b, b]"],
             "'joint_names' is .*'b', 'b'.*: every joint needs a name of its own",
         ),
-        ("touch_adapter", ["-p", "driver:=own", "-p", "joint_signs:=[1, 1]"], "joint_signs is .*3 numbers"),
+        ("touch_adapter", ["-p", "driver:=own", "-p", "joint_signs:=[1, 1]"], "joint_signs are .*3 numbers"),
         ("trajectory_publisher", ["-p", "path:=square"], "one of circle, lemniscate, points"),
     ],
 )
