@@ -24,7 +24,7 @@ help: ## list the targets
 demo: $(VENV)/ready ## watch the twin follow a circle and a lemniscate; options by ARGS="--feed-forward"
 	@$(BIN)/python -m touch_sim.demo $(ARGS)
 
-test: unit lint ## run all tests, then ruff and mypy; options of pytest by ARGS="-k solver"
+test: lint unit ## ruff and mypy, then all tests; options of pytest by ARGS="-k solver"
 
 unit: $(VENV)/ready-to-test
 	@$(PYTEST) $(DEALT) $(TESTS) $(ARGS)

@@ -32,7 +32,9 @@ class JointConvention:
             raise ValueError(f"{chain.name} has passive axes; a driver's angles cannot be told from ours")
         turned, moved = (np.array(values, dtype=np.float64) for values in (signs, offsets))
         if turned.shape != (chain.dof,) or not np.isin(turned, (-1.0, 1.0)).all():
-            raise ValueError(f"joint_signs are {turned.tolist()}: they may be {chain.dof} numbers, each 1 or -1")
+            raise ValueError(
+                f"joint_signs are {turned.tolist()}: they may be {chain.dof} numbers, each 1 or -1"
+            )
         if moved.shape != (chain.dof,) or not np.isfinite(moved).all():
             raise ValueError(f"joint_offsets are {moved.tolist()}: they may be {chain.dof} numbers")
         if relative:
