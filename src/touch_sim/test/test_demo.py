@@ -114,6 +114,8 @@ def test_the_demo_follows_and_reports(tmp_path):
         (["--rule", "newton"], "levenberg_marquardt"),
         (["--namespace", "1st"], "namespace"),
         (["--out", "/proc/nowhere"], "/proc/nowhere"),
+        (["--ros-args", "-p", "pid_controler:gains.p:=5.0"], "did you mean 'pid_controller'?"),
+        (["--ros-args", "-p", "arm:gains.p:=5.0"], "no node 'arm' here, but touch_sim, pid_controller"),
     ],
 )
 def test_a_wrong_option_is_one_line_and_exit_code_2(options, words, tmp_path):

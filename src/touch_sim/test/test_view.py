@@ -55,6 +55,7 @@ def test_it_serves_its_page_and_ends_quietly(number):
         (["--rate", "0"], "'rate' is 0.0"),
         (["--robot", "tuch"], "unknown robot 'tuch'"),
         (["--namespace", "1bad"], "1bad"),
+        (["--ros-args", "-p", "viewr:port:=0"], "did you mean 'viewer'?"),
     ],
 )
 def test_a_wrong_option_is_said_in_one_line(arguments, complaint):

@@ -9,7 +9,9 @@ from __future__ import annotations
 import argparse
 import math
 import sys
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
+from difflib import get_close_matches
+from itertools import pairwise
 from typing import NoReturn
 
 BAD_OPTION, FAILED, INTERRUPTED = 2, 1, 130
@@ -69,6 +71,16 @@ def split_ros_arguments(arguments: Sequence[str]) -> tuple[list[str], list[str]]
     """The program's own arguments, and --ros-args with all that follows."""
     cut = arguments.index("--ros-args") if "--ros-args" in arguments else len(arguments)
     return list(arguments[:cut]), list(arguments[cut:])
+
+
+def check_addressees(ros_arguments: Sequence[str], nodes: Collection[str]) -> None:
+    """Raise ValueError for `-p NODE:NAME:=VALUE` where NODE is none of `nodes`: ROS would ignore it in silence."""
+    for option, rule in pairwise(ros_arguments):
+        node, colon, _ = rule.split(":=")[0].partition(":")
+        if option in ("-p", "--param") and colon and node not in nodes:
+            near = get_close_matches(node, nodes, n=1)
+            hint = f"; did you mean {near[0]!r}?" if near else ""
+            raise ValueError(f"-p {rule}: no node {node!r} here, but {', '.join(nodes)}{hint}")
 
 
 def complain(program: str, message: str, code: int) -> int:

@@ -19,6 +19,7 @@ from touch_sim.command_line import (
     FAILED,
     INTERRUPTED,
     Parser,
+    check_addressees,
     complain,
     complain_of_missing,
     split_ros_arguments,
@@ -56,7 +57,7 @@ def _demonstrate(options: argparse.Namespace, ros_arguments: list[str]) -> int:
     from touch_sim.demo_output import write, write_bag
     from touch_sim.demo_progress import progress_for
     from touch_sim.demo_run import DemoError, run_demo
-    from touch_sim.suite import SuiteOptions
+    from touch_sim.suite import NODES, SuiteOptions
 
     if options.record:
         import rosbags  # noqa: F401 - said now if it is missing, and not after the run
@@ -64,6 +65,7 @@ def _demonstrate(options: argparse.Namespace, ros_arguments: list[str]) -> int:
     paths = ("circle", "lemniscate") if options.path == "both" else (options.path,)
     try:
         check_namespace(suite.namespace)
+        check_addressees(ros_arguments, NODES)
         options.out.mkdir(parents=True, exist_ok=True)
         rclpy.init(args=["demo", *ros_arguments], signal_handler_options=SignalHandlerOptions.NO)
         results = run_demo(suite, paths, options.laps, progress_for(sys.stderr))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 from rclpy.context import Context
@@ -17,6 +17,14 @@ from touch_sim.simulation import FEED_FORWARD, PERIOD
 from touch_sim.touch_sim_node import TouchSim
 
 Value = bool | int | float | str | list[str]
+
+NODES: Mapping[str, Callable[..., Node]] = {
+    "touch_sim": TouchSim,
+    "pid_controller": PidController,
+    "ik_node": IkNode,
+    "trajectory_publisher": TrajectoryPublisher,
+}
+"""What a suite is made of, by the nodes' names."""
 
 
 @dataclass(frozen=True)
@@ -71,12 +79,7 @@ class Suite:
         further = parameters or {}
         made: list[Node] = []
         try:
-            for factory, name in (
-                (TouchSim, "touch_sim"),
-                (PidController, "pid_controller"),
-                (IkNode, "ik_node"),
-                (TrajectoryPublisher, "trajectory_publisher"),
-            ):
+            for name, factory in NODES.items():
                 made.append(
                     factory(
                         context=context,

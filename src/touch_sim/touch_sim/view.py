@@ -14,7 +14,14 @@ import sys
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from touch_sim.command_line import BAD_OPTION, Parser, complain, complain_of_missing, split_ros_arguments
+from touch_sim.command_line import (
+    BAD_OPTION,
+    Parser,
+    check_addressees,
+    complain,
+    complain_of_missing,
+    split_ros_arguments,
+)
 
 if TYPE_CHECKING:
     from rclpy.node import Node
@@ -45,11 +52,13 @@ def _view(options: argparse.Namespace, ros_arguments: list[str]) -> int:
     from rclpy.signals import SignalHandlerOptions
 
     from gaik_ros.run import ROS_ARGUMENT_ERRORS, Runner, StopRequest, check_namespace, stopped_by_signals
+    from touch_sim.suite import NODES
 
     request = StopRequest()
     with stopped_by_signals(request.make):
         try:
             check_namespace(options.namespace)
+            check_addressees(ros_arguments, (*NODES, "viewer"))
             rclpy.init(args=["view", *ros_arguments], signal_handler_options=SignalHandlerOptions.NO)
             nodes, address = _nodes(options)
             print(f"The page is at {address}; Ctrl-C ends it.", flush=True)
