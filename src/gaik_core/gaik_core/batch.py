@@ -80,10 +80,15 @@ class BatchResult:
         return Solutions(**fields)
 
 
+def _processors() -> int:
+    """How many this process may use; not every system can say that, and then how many there are."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
 def solve_in_parallel(problem: BatchProblem, result: BatchResult, workers: int | None) -> None:
     """Solve a batch in as many threads as there are processors, or `workers`; kernels hold no interpreter lock."""
     size = len(problem.targets)
-    threads = max(1, min(workers or len(os.sched_getaffinity(0)), size // SHARE))
+    threads = max(1, min(workers or _processors(), size // SHARE))
     if threads == 1:
         solve_slice(problem, result, slice(None))
         return
@@ -103,9 +108,16 @@ def solve_slice(problem: BatchProblem, result: BatchResult, part: slice) -> None
     common = (problem.rule.settings, result.angles)
     if problem.fits_lanes:
         iterations, distances = result.counts[:, many.ITERATIONS], result.errors[:, many.DISTANCE]
-        tolerance, budget = problem.stop[0], problem.stop[-1]
+        tolerance, _, _, window, budget = problem.stop
         solve_lanes(
-            problem.algebra, problem.chain, targets, tolerance, budget, *common, distances, iterations
+            problem.algebra,
+            problem.chain,
+            targets,
+            tolerance,
+            min(window, budget),
+            *common,
+            distances,
+            iterations,
         )
         left = np.flatnonzero(iterations == LEFT_OVER)
     else:

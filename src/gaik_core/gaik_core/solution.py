@@ -45,7 +45,7 @@ class Solution(NamedTuple):
     """The end of a solve.
 
     Attributes:
-        angles: (dof,) the last angles.
+        angles: (dof,) the last angles; of a solve that has not converged, those that came nearest.
         error: distance |target - forward(angles)| (m).
         iterations: updates made, over all attempts; 0 where the start satisfied the tolerance.
         converged: whether the error is below the tolerance, and the orientation's error below its own.

@@ -92,7 +92,7 @@ def solve(
     except TypeError:  # something that has no hash
         packed = _packed_problem.__wrapped__(*given)
     if trace:
-        return _solve_traced(packed, wanted, angles, max_iterations, restarts, posture)
+        return _solve_traced(chain, packed, wanted, angles, max_iterations, restarts, posture)
     preferred = None if posture is None else finite_vector("posture", posture, chain.dof)
     used = 0
     if restarts:
@@ -194,7 +194,7 @@ def solve_path(
         limits: whether to hold the joint limits.
         largest_step: no joint moves further than this (rad or m) in one solve. A target at which one would is walked
             to in 2, 4, … 128 pieces of the straight way from the target before; where even of the smallest one jumps,
-            the status is stagnated. So targets that lie close together are as close in the joints.
+            the arm stays where it was, stagnated. So targets that lie close together are as close in the joints.
 
     Returns:
         A Solution of arrays.
@@ -232,7 +232,13 @@ def random_starts(chain: KinematicChain, count: int, seed: int) -> Array:
 
 
 def _solve_traced(
-    packed: Array, target: Array, angles: Array, most: int, restarts: int, posture: ArrayLike | None
+    chain: KinematicChain,
+    packed: Array,
+    target: Array,
+    angles: Array,
+    most: int,
+    restarts: int,
+    posture: ArrayLike | None,
 ) -> Solution:
     """One descent with every iterate kept."""
     if restarts:
@@ -250,6 +256,9 @@ def _solve_traced(
         _raise_not_finite(target, angles)
     made = slice(iterations + 1)
     kept = Trace(trace_angles[made].copy(), trace_errors[made, 0].copy(), trace_errors[made, 1].copy())
+    if status == kernels.UNREACHABLE:  # then the descent may have been toward a nearer point
+        x, y, z = (target[:3] - chain.forward(kept.angles)).T
+        kept = kept._replace(error=np.hypot(np.hypot(x, y), z))
     return Solution(angles, error, iterations, status == kernels.CONVERGED, STATUS[status], kept, turn)
 
 

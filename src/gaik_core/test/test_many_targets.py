@@ -1,5 +1,7 @@
 """Batches and paths: each answer is the one that `solve` gives, however many there are and wherever they run."""
 
+import os
+
 import numpy as np
 import pytest
 from chains import ALGEBRAS, inside, random_chain, table1_sphere
@@ -104,6 +106,32 @@ def test_batch_holds_limits():
         assert (angles >= arm.lower).all() and (angles <= arm.upper).all()
 
 
+def test_the_answer_does_not_hang_on_the_size_of_the_batch():
+    """Fewer targets than lanes are solved one by one; this one stagnates before it would be reached."""
+    limits = {"lower": -1.5, "upper": 1.5}
+    arm = KinematicChain(
+        [
+            Joint("a", (0, 0, 1), (0.0, 0.1, -0.4), **limits),
+            Joint("b", (0, 1, 0), (-0.3, 0.0, -0.2), **limits),
+            Joint("c", (1, 0, 0), (0.5, 0.2, -0.5), **limits),
+        ]
+    )
+    target, options = (
+        [-0.08952199, 0.35801341, -1.09101969],
+        {"rule": LevenbergMarquardt(), "tolerance": 1e-4},
+    )
+    one = solve(arm, target, **options)
+    for size in (1, 15, 16, 40):
+        batch = solve_batch(arm, np.tile(target, (size, 1)), **options)
+        assert (batch.status == one.status).all() and (batch.iterations == one.iterations).all()
+        assert batch.angles == pytest.approx(np.tile(one.angles, (size, 1)), abs=1e-6)
+
+
+def test_where_the_system_cannot_say_which_processors_are_free(monkeypatch):
+    monkeypatch.delattr(os, "sched_getaffinity")  # as on macOS and Windows
+    assert solve_batch(TOUCH, np.tile([0.05, 0.05, 0.0], (500, 1)), rule=LevenbergMarquardt()).converged.all()
+
+
 def test_workers_change_nothing():
     targets = np.random.default_rng(2).uniform(-0.2, 0.2, (1000, 3))
     alone, shared = (solve_batch(TOUCH, targets, rule=LevenbergMarquardt(), workers=n) for n in (1, 2))
@@ -166,7 +194,8 @@ def test_path_says_where_it_cannot_follow():
         crank, [[1.0, 0.0, 0.0], [-1.0, 0.01, 0.0]], [0.0], rule=LevenbergMarquardt(), tolerance=0.02
     )
     assert path.converged.tolist() == [True, False]
-    assert path.status[1] != Status.CONVERGED and np.isfinite(path.angles).all()
+    assert path.status[1] != Status.CONVERGED and path.angles[1] == path.angles[0]
+    assert path.error[1] == pytest.approx(np.linalg.norm([-1.0, 0.01] - crank.forward(path.angles[1])[:2]))
 
 
 @pytest.mark.parametrize("many", [solve_path, solve_batch])

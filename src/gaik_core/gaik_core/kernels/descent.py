@@ -10,12 +10,12 @@ from numpy.typing import NDArray
 from gaik_core.kernels.compiled import inlined, uncounted
 from gaik_core.kernels.kinematics import Chain, kinematics
 from gaik_core.kernels.limits import blocked_axes, blocked_joints, clamp_joints, hold_axes, move_inside
-from gaik_core.kernels.rules import SLOTS, step
+from gaik_core.kernels.rules import SLOTS, forget, step
 from gaik_core.kernels.task import measure, task_rows
 
 Array = NDArray[np.float64]
 
-CONVERGED, ITERATION_LIMIT, STAGNATED, UNREACHABLE, LIMITED, NOT_FINITE = range(6)
+CONVERGED, ITERATION_LIMIT, STAGNATED, UNREACHABLE, LIMITED, NOT_FINITE, GOING = range(7)
 
 IMPROVEMENT = 1e-6
 """A solve stagnates when the loss has not fallen by this share within the rule's window of updates."""
@@ -100,9 +100,28 @@ def pull_in(chain: Chain, target: Array, tolerance: float, near: Array) -> None:
 
 
 @inlined
+def take_out_blocked(chain: Chain, angles: Array, error: Array, jacobian: Array, normal: Array) -> int:
+    """Take what would cross a limit out of the Jacobian; how many limits are in the way."""
+    axes, couplings, _, limits, held = chain
+    if limits.shape[1] == 0:
+        return 0
+    blocked = blocked_joints(limits, angles, error, jacobian)
+    return int(blocked + blocked_axes(axes, couplings, held, angles, error, jacobian, normal))
+
+
+@inlined
+def hold_limits(chain: Chain, previous: Array, angles: Array) -> None:
+    """Take an update back as far as it crosses limits."""
+    axes, couplings, _, limits, held = chain
+    if limits.shape[1] > 0:
+        clamp_joints(limits, angles)
+        hold_axes(axes, couplings, limits, held, previous, angles)
+
+
+@inlined
 def room(n: int, joints: int) -> int:
     """How many numbers of workspace a solve of `n` axes takes: one array, since each that is made costs 25 ns."""
-    return LARGEST + 2 * POSE_SIZE + 7 * n + 9 * joints + SLOTS * max(SLOTS, joints)
+    return LARGEST + 2 * POSE_SIZE + 7 * n + 10 * joints + SLOTS * max(SLOTS, joints)
 
 
 @uncounted
@@ -122,6 +141,7 @@ def descend(
 ) -> Outcome:
     """Move `angles` in place until the error of the target is below its tolerance, or stops falling by `improvement`.
 
+    Where it does not get there, `angles` end where they came nearest, and it is there that limits count as in the way.
     `trace_angles` (max_iterations + 1, d) and `trace_errors` (max_iterations + 1, 2) are filled as far as the solve
     goes; of length 0, they are left alone. `work` is what `room` asks for.
     """
@@ -131,45 +151,45 @@ def descend(
     pose, error, free = work[:POSE_SIZE], work[POSE_SIZE : POSE_SIZE + rows], work[2 * POSE_SIZE :]
     turned, columns, free = free[:n], free[n : 7 * n].reshape((n, 6)), free[7 * n :]
     jacobian, free = free[: rows * joints].reshape((rows, joints)), free[rows * joints :]
-    previous, normal, free = free[:joints], free[joints : 2 * joints], free[2 * joints :]
-    state = free[: SLOTS * max(SLOTS, joints)].reshape((SLOTS, max(SLOTS, joints)))
-    for k in range(SLOTS):
-        for j in range(state.shape[1]):
-            state[k, j] = 0.0
-    limited = limits.shape[1] > 0
-    inside = not limited or move_inside(axes, couplings, limits, held, angles)
-    best, since, iterations = np.inf, 0, 0
+    previous, nearest, normal = free[:joints], free[joints : 2 * joints], free[2 * joints : 3 * joints]
+    state = free[3 * joints :][: SLOTS * max(SLOTS, joints)].reshape((SLOTS, max(SLOTS, joints)))
+    forget(state)
+    inside = limits.shape[1] == 0 or move_inside(axes, couplings, limits, held, angles)
+    copy(angles, nearest)
+    ended = GOING if inside else LIMITED
+    least, best, since, iterations = np.inf, np.inf, 0, 0
     while True:
         kinematics(algebra, axes, couplings, ends, angles, turned, columns, pose, jacobian)
         distance, turn = measure(kind, weight, target, pose, jacobian, error)
-        if iterations < trace_errors.shape[0]:
+        if iterations < trace_errors.shape[0] and (ended == GOING or iterations == 0):
             copy(angles, trace_angles[iterations])
             trace_errors[iterations, 0], trace_errors[iterations, 1] = distance, turn
-        if not inside:
-            return LIMITED, iterations, distance, turn
-        if distance < tolerance and turn < orientation_tolerance:
+        if ended == GOING and distance < tolerance and turn < orientation_tolerance:
             return CONVERGED, iterations, distance, turn
+        blocked = take_out_blocked(chain, angles, error, jacobian, normal)
+        if ended != GOING:
+            return LIMITED if ended == STAGNATED and blocked > 0 else ended, iterations, distance, turn
         loss = square(error)
+        if loss < least:
+            least = loss
+            copy(angles, nearest)
         since += 1
         if loss < best * (1.0 - improvement):
             best, since = loss, 0
-        blocked = 0
-        if limited:
-            blocked = blocked_joints(limits, angles, error, jacobian)
-            blocked += blocked_axes(axes, couplings, held, angles, error, jacobian, normal)
         if since >= window:
-            return LIMITED if blocked > 0 else STAGNATED, iterations, distance, turn
-        if iterations >= max_iterations:
-            return ITERATION_LIMIT, iterations, distance, turn
-        copy(angles, previous)
-        step(rule, angles, error, jacobian, state, settings)
-        if not all_finite(angles):
-            copy(previous, angles)
-            return STAGNATED, iterations, distance, turn
-        if limited:
-            clamp_joints(limits, angles)
-            hold_axes(axes, couplings, limits, held, previous, angles)
-        iterations += 1
+            ended = STAGNATED
+        elif iterations >= max_iterations:
+            ended = ITERATION_LIMIT
+        else:
+            copy(angles, previous)
+            step(rule, angles, error, jacobian, state, settings)
+            if all_finite(angles):
+                hold_limits(chain, previous, angles)
+                iterations += 1
+            else:
+                ended = STAGNATED
+        if ended != GOING:
+            copy(nearest, angles)
 
 
 @uncounted

@@ -21,25 +21,25 @@ from gaik_core.kernels.lane_kinematics import (
     one_axis_each,
     turn_axes,
 )
+from gaik_core.kernels.rules import raised_damping
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
-
-PATIENCE = 20
-"""Updates after which a lane gives its target up to the solve of one target."""
 
 LEFT_OVER = -1
 """Iterations of a target given up."""
 
 
 @inlined
-def compare(wanted: Array, tip: Array, error: Array, squares: Array, made: Integers) -> None:
-    """The error in every lane, its square, and one more update counted."""
+def compare(wanted: Array, tip: Array, error: Array, squares: Array, raised: Array, made: Integers) -> None:
+    """The error in every lane, its square, how much that raises the damping, and one more update counted."""
     for lane in range(LANES):
         x, y = wanted[0, lane] - tip[0, lane], wanted[1, lane] - tip[1, lane]
         z = wanted[2, lane] - tip[2, lane]
         error[0, lane], error[1, lane], error[2, lane] = x, y, z
-        squares[lane] = x * x + y * y + z * z
+        square = x * x + y * y + z * z
+        raised[lane] = raised_damping(raised[lane], square, squares[lane])
+        squares[lane] = square
         made[lane] += 1
 
 
@@ -67,13 +67,15 @@ def normal_equations(limits: Array, angles: Array, error: Array, jacobian: Array
 
 
 @inlined
-def solve_normal_equations(normal: Array, error: Array, damping: float, bias: float) -> None:
+def solve_normal_equations(
+    normal: Array, error: Array, squares: Array, raised: Array, damping: float, bias: float
+) -> None:
     """`error` becomes (J Jᵀ + λ² I)⁻¹ e, by L D Lᵀ (Golub and Van Loan, 4.1): three divisions and no root."""
     for lane in range(LANES):
         x, y, z = error[0, lane], error[1, lane], error[2, lane]
         xx, xy, xz = normal[0, lane], normal[1, lane], normal[2, lane]
         yy, yz, zz = normal[3, lane], normal[4, lane], normal[5, lane]
-        fade = 0.5 * damping * (x * x + y * y + z * z) + bias * (xx + yy + zz) / 3.0 + 1e-300
+        fade = raised[lane] * (0.5 * damping * squares[lane] + bias * (xx + yy + zz) / 3.0) + 1e-300
         d0 = 1.0 / (xx + fade)
         l10, l20 = xy * d0, xz * d0
         d1 = 1.0 / (yy + fade - l10 * xy)
@@ -118,7 +120,7 @@ def solve_lanes(
     chain: Chain,
     targets: Array,
     tolerance: float,
-    max_iterations: int,
+    patience: int,
     settings: Array,
     angles: Array,
     errors: Array,
@@ -126,6 +128,7 @@ def solve_lanes(
 ) -> None:
     """Solve `targets` (m, 3) from the rows of `angles` (m, d), in place; `iterations` of those given up is LEFT_OVER.
 
+    A lane gives a target up after `patience` updates; before these the solve of one target may not stagnate either.
     There is a target for every lane at least, and the chain has limits of joints at most, not of axes.
     """
     axes, couplings, ends, limits, _ = chain
@@ -139,8 +142,9 @@ def solve_lanes(
     jacobian = columns if direct else np.zeros((joints, 3, LANES))
     tip, twists, state = np.zeros((3, LANES)), np.zeros((n, 6, LANES)), np.zeros((8, LANES))
     wanted, error, normal = np.zeros((3, LANES)), np.zeros((3, LANES)), np.zeros((6, LANES))
-    task, made, squares = np.arange(LANES), np.zeros(LANES, np.int64), np.zeros(LANES)
-    patience, following, active = min(PATIENCE, max_iterations), LANES, LANES
+    task, made = np.arange(LANES), np.zeros(LANES, np.int64)
+    squares, raised = np.zeros(LANES), np.ones(LANES)
+    following, active = LANES, LANES
     for lane in range(LANES):
         take_up(lane, lane, targets, angles, limits, wanted, theta)
     while active > 0:
@@ -152,7 +156,7 @@ def solve_lanes(
             by_screw_rotors(axes, ends, turned, tip, twists, columns, state)
         if not direct:
             joint_columns(couplings, columns, jacobian)
-        compare(wanted, tip, error, squares, made)
+        compare(wanted, tip, error, squares, raised, made)
         for lane in range(LANES):
             reached = squares[lane] < tolerance * tolerance
             if task[lane] == many or not (reached or made[lane] > patience):
@@ -164,12 +168,12 @@ def solve_lanes(
             iterations[task[lane]] = made[lane] - 1 if reached else LEFT_OVER
             for k in range(3):
                 error[k, lane] = 0.0  # so that this round's step leaves what the lane now takes up as it is
-            task[lane], made[lane] = following, 0
+            task[lane], made[lane], squares[lane], raised[lane] = following, 0, 0.0, 1.0
             if following < many:
                 take_up(following, lane, targets, angles, limits, wanted, theta)
                 following += 1
             else:
                 active -= 1
         normal_equations(limits, theta, error, jacobian, normal)
-        solve_normal_equations(normal, error, settings[0], settings[1])
+        solve_normal_equations(normal, error, squares, raised, settings[0], settings[1])
         step(limits, jacobian, error, theta)

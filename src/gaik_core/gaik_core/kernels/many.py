@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from gaik_core.kernels.compiled import compiled, inlined
+from gaik_core.kernels.compiled import compiled, inlined, uncounted
 from gaik_core.kernels.descent import (
-    CONVERGED,
     IMPROVEMENT,
     STAGNATED,
+    UNREACHABLE,
     Stop,
     copy,
     room,
@@ -69,6 +69,48 @@ def largest_step(a: Array, b: Array) -> float:
     return largest
 
 
+@uncounted
+def walk(
+    algebra: int,
+    chain: Chain,
+    kind: int,
+    begin: Array,
+    end: Array,
+    pieces: int,
+    stop: Stop,
+    rule: int,
+    settings: Array,
+    bound: float,
+    angles: Array,
+    work: Array,
+) -> tuple[bool, int, int, float, float]:
+    """Solve `pieces` points of the straight way in order, the last one the end; `angles` in place.
+
+    Returns whether any step was a jump, and the outcome of the last point with the updates of all. `work` is what
+    `room_to_walk` asks for.
+    """
+    joints = angles.shape[0]
+    point, before, free = work[:3], work[3 : 3 + joints], work[3 + joints :]
+    no_trace, jumped, total = work[:0].reshape((0, 2)), False, 0
+    status, distance, turn = STAGNATED, np.inf, np.inf
+    for k in range(1, pieces + 1):
+        for axis in range(3):
+            point[axis] = end[axis] if k == pieces else begin[axis] + k / pieces * (end[axis] - begin[axis])
+        copy(angles, before)
+        status, iterations, distance, turn = solve_once(
+            algebra, chain, kind, point, stop, rule, settings, angles, IMPROVEMENT, no_trace, no_trace, free
+        )
+        total += iterations
+        jumped = jumped or largest_step(angles, before) > bound
+    return jumped, status, total, distance, turn
+
+
+@inlined
+def room_to_walk(n: int, joints: int) -> int:
+    """How many numbers of workspace `walk` takes."""
+    return 3 + joints + room(n, joints)
+
+
 @compiled
 def solve_along(
     algebra: int,
@@ -87,38 +129,29 @@ def solve_along(
     """Solve `targets` (m, 3) in order, each from the angles of the one before; write them into `angles` (m, d).
 
     A step of more than `bound` in any joint is a jump to another branch. It is walked again in smaller and smaller
-    pieces of the straight way; where even the smallest jump, it is kept out of the result as STAGNATED.
+    pieces of the straight way; where even the smallest jump, the arm stays where it was, STAGNATED or UNREACHABLE.
     """
-    no_trace, current, piece = np.empty((0, 2)), start.copy(), targets[:1].copy()[0]
-    work = np.empty(room(chain[0].shape[0], start.shape[0]))
+    current, work = start.copy(), np.empty(room_to_walk(chain[0].shape[0], start.shape[0]))
+    stay = (stop[0], stop[1], stop[2], stop[3], 0)
     for i in range(targets.shape[0]):
-        copy(current, angles[i])
-        status, iterations, distance, turn = solve_once(
-            algebra, chain, kind, targets[i], stop, rule, settings, angles[i], IMPROVEMENT, no_trace, no_trace,
-            work,
-        )  # fmt: skip
-        halvings = 0
-        while i > 0 and largest_step(angles[i], current) > bound and halvings < HALVINGS:
-            halvings += 1
-            pieces = 2**halvings
+        begin, largest = (targets[i - 1], bound) if i > 0 else (targets[i], np.inf)
+        halvings, total = 0, 0
+        while True:
             copy(current, angles[i])
-            before, jumped = current.copy(), False
-            for k in range(1, pieces + 1):
-                for axis in range(3):
-                    piece[axis] = targets[i - 1, axis] + k / pieces * (
-                        targets[i, axis] - targets[i - 1, axis]
-                    )
-                status, more, distance, turn = solve_once(
-                    algebra, chain, kind, piece, stop, rule, settings, angles[i], IMPROVEMENT, no_trace, no_trace,
-                    work,
-                )  # fmt: skip
-                iterations += more
-                jumped = jumped or largest_step(angles[i], before) > bound
-                copy(angles[i], before)
-            if not jumped:
+            jumped, status, iterations, distance, turn = walk(
+                algebra, chain, kind, begin, targets[i], 2**halvings, stop, rule, settings, largest, angles[i],
+                work,
+            )  # fmt: skip
+            total += iterations
+            if not jumped or halvings == HALVINGS:
                 break
-            if halvings == HALVINGS:
-                status = STAGNATED if status == CONVERGED else status
-        counts[i, STATUS], counts[i, ITERATIONS], counts[i, RESTARTS] = status, iterations, 0
+            halvings += 1
+        if jumped:
+            copy(current, angles[i])
+            _, _, _, distance, turn = walk(
+                algebra, chain, kind, begin, targets[i], 1, stay, rule, settings, largest, angles[i], work
+            )
+            status = status if status == UNREACHABLE else STAGNATED
+        counts[i, STATUS], counts[i, ITERATIONS], counts[i, RESTARTS] = status, total, 0
         errors[i, DISTANCE], errors[i, TURN] = distance, turn
         copy(angles[i], current)

@@ -9,7 +9,7 @@ from gaik_core.kernels.compiled import compiled, inlined
 from gaik_core.kernels.descent import Stop, copy, square
 from gaik_core.kernels.kinematics import Chain, kinematics
 from gaik_core.kernels.limits import axis_angle, clamp_joints, hold_axes
-from gaik_core.kernels.rules import SLOTS, levenberg_marquardt, solve_normal
+from gaik_core.kernels.rules import SLOTS, forget, levenberg_marquardt, solve_normal
 from gaik_core.kernels.task import measure, task_rows
 
 Array = NDArray[np.float64]
@@ -126,6 +126,7 @@ def settle(
         for j in range(joints):
             angles[j] += share * step[j]
         arrived = False
+        forget(normal)
         for _ in range(CORRECTIONS + 1):
             if limits.shape[1] > 0:
                 clamp_joints(limits, angles)

@@ -16,8 +16,14 @@ from gaik_core.kernels.compiled import inlined
 
 Array = NDArray[np.float64]
 
-SLOTS = 6
-"""Rows of a rule's state, and its fewest columns: the normal matrix of a pose fits."""
+SLOTS = 7
+"""Rows of a rule's state, and its fewest columns: the normal matrix of a pose fits, with a row below it."""
+
+LONGEST_STEP = 0.25 * math.pi
+"""How far a joint moves at most in an update whose length is chosen (rad or m): further, no linearisation holds."""
+
+RAISE, LOWER = 4.0, 0.7
+"""Of the damping, where the loss grew and where it fell: lowered much faster, the arm soon swings again."""
 
 (
     GRADIENT_DESCENT,
@@ -30,6 +36,14 @@ SLOTS = 6
     DAMPED,
     LEVENBERG_MARQUARDT,
 ) = range(9)
+
+
+@inlined
+def forget(state: Array) -> None:
+    """What a solve begins with."""
+    for k in range(state.shape[0]):
+        for j in range(state.shape[1]):
+            state[k, j] = 0.0
 
 
 @inlined
@@ -53,7 +67,8 @@ def steepest_descent(angles: Array, error: Array, jacobian: Array, state: Array,
     """θ ← θ + α Jᵀ e with α = e·f / f·f, f = J Jᵀ e: the best step of the linearised arm (Buss 2004, section 5).
 
     Where the arm bends away from its linearisation and the loss grows, α is halved, and let grow again as it falls:
-    without that, a stretched arm under an unreachable target swings for ever.
+    without that, a stretched arm under an unreachable target swings for ever. No joint moves further than LONGEST_STEP:
+    where f nearly vanishes, the linearised arm would spin.
     """
     for j in range(angles.shape[0]):
         state[0, j] = descent_direction(error, jacobian, j)
@@ -74,6 +89,11 @@ def steepest_descent(angles: Array, error: Array, jacobian: Array, state: Array,
         square += f * f
     if square > 0.0:
         alpha = along / square * 0.5 ** state[1, 0]
+        largest = 0.0
+        for j in range(angles.shape[0]):
+            largest = max(largest, abs(alpha * state[0, j]))
+        if largest > LONGEST_STEP:
+            alpha *= LONGEST_STEP / largest
         for j in range(angles.shape[0]):
             angles[j] += alpha * state[0, j]
 
@@ -190,12 +210,28 @@ def damped_least_squares(angles: Array, error: Array, jacobian: Array, state: Ar
 
 
 @inlined
+def raised_damping(raised: float, square: float, last: float) -> float:
+    """How many times its formula's value the damping is to be, by what it was and by |e|² now and an update ago.
+
+    Both are zero when a solve begins.
+    """
+    return RAISE * raised if square > last > 0.0 else max(1.0, LOWER * raised)
+
+
+@inlined
 def levenberg_marquardt(angles: Array, error: Array, jacobian: Array, state: Array, settings: Array) -> None:
-    """A damping that fades with the loss: λ = c ½ |e|² + a small multiple of J Jᵀ (Sugihara 2011)."""
+    """A damping that fades with the loss: λ = c ½ |e|² + a small multiple of J Jᵀ (Sugihara 2011).
+
+    It is raised where the loss grew, and lowered again as it falls: without that the arm swings under a target out of
+    reach, whose loss does not fade.
+    """
     square = 0.0
     for row in range(error.shape[0]):
         square += error[row] * error[row]
-    damped_step(angles, error, jacobian, state, 0.5 * settings[0] * square, settings[1])
+    raised, last = state[SLOTS - 1, 0], state[SLOTS - 1, 1]
+    raised = raised_damping(raised, square, last)
+    state[SLOTS - 1, 0], state[SLOTS - 1, 1] = raised, square
+    damped_step(angles, error, jacobian, state, raised * 0.5 * settings[0] * square, raised * settings[1])
 
 
 @inlined
