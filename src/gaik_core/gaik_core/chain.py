@@ -10,12 +10,13 @@ from typing import Any, Literal, get_args
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from gaik_core.checks import array_of, finite, finite_vector, unit_vector
+from gaik_core.checks import array_of, finite, finite_vector
 from gaik_core.errors import GaikError, ShapeError, UnknownNameError
 from gaik_core.joint import Joint
 from gaik_core.kernels import kinematics as kernels
 from gaik_core.kernels.limits import can_hold
 from gaik_core.packing import pack, without_limits
+from gaik_core.versors import Orientation, unit_quaternion
 
 Array = NDArray[np.float64]
 Algebra = Literal["quaternion", "conformal"]
@@ -59,7 +60,7 @@ class KinematicChain:
         name: str = "chain",
         description: str = "",
         origin: ArrayLike = (0.0, 0.0, 0.0),
-        orientation: ArrayLike = (1.0, 0.0, 0.0, 0.0),
+        orientation: Orientation = (1.0, 0.0, 0.0, 0.0),
     ) -> None:
         """Build a chain from its joints.
 
@@ -68,11 +69,13 @@ class KinematicChain:
             name: of the robot.
             description: one line about it.
             origin: (3,) where the first axis stands in the base frame (m).
-            orientation: (4,) unit quaternion (w, x, y, z) of the tip frame when every angle is zero.
+            orientation: of the tip frame when every angle is zero: (4,) quaternion (w, x, y, z), Quaternion or Rotor.
 
         Raises:
             GaikError: where the chain has no joint, two of one name, or a coupling to a joint it has not.
         """
+        if isinstance(joints, Joint):
+            raise GaikError(f"joints is the joint {joints.name!r} alone; expected a sequence of joints")
         self.joints = tuple(joints)
         active = _active(self.joints)
         self.name = name
@@ -80,7 +83,7 @@ class KinematicChain:
         self.dof = len(active)
         self.joint_names = tuple(joint.name for joint in active)
         self.axis_names = tuple(joint.name for joint in self.joints)
-        turn = unit_vector("orientation", orientation, 4)
+        turn = unit_quaternion("orientation", orientation)
         self.packed = pack(self.joints, finite_vector("origin", origin, 3), turn)
         self.packed_without_limits = without_limits(self.packed)
         axes, couplings, ends, limits, held = self.packed
@@ -219,6 +222,12 @@ class KinematicChain:
         result = np.empty((len(many), 7))
         kernels.poses(code, self.packed, many, result)
         return result.reshape((*values.shape[:-1], 7))
+
+
+def no_chain(what: object) -> GaikError:
+    """The error of a function that was given something else for a chain."""
+    load = f"; load one with KinematicChain.load({what!r})" if isinstance(what, str) else ""
+    return GaikError(f"chain is {what!r}; expected a KinematicChain{load}")
 
 
 def _frozen(values: ArrayLike) -> Array:

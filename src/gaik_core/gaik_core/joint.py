@@ -51,6 +51,8 @@ class Joint:
         """Check and freeze; GaikError: what is wrong with which joint."""
         if self.kind not in KINDS:
             raise self._error("kind", repr(self.kind), f"expected {' or '.join(KINDS)}")
+        if not isinstance(self.coupling, Mapping):
+            raise self._error("coupling", repr(self.coupling), "expected factors by the names of joints")
         axis = unit_vector(f"joint {self.name!r}: axis", self.axis, 3)
         link = finite_vector(f"joint {self.name!r}: link", self.link, 3)
         for what, number in {"offset": self.offset, "home": self.home, **self._factors()}.items():
@@ -60,6 +62,8 @@ class Joint:
             ("limits", self.lower, self.upper),
             ("axis_limits", self.axis_lower, self.axis_upper),
         ):
+            if not (is_number(low) and is_number(high)):
+                raise self._error(what, f"[{low!r}, {high!r}]", "expected two numbers; infinite for none")
             if not low <= high:
                 raise self._error(what, f"[{low:g}, {high:g}]", "the first must not be above the second")
         if self.passive and (self.lower > -math.inf or self.upper < math.inf):

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from gaik_core.batch import BatchProblem, BatchResult, solve_in_parallel
-from gaik_core.chain import KinematicChain, algebra_code
+from gaik_core.chain import KinematicChain, algebra_code, no_chain
 from gaik_core.checks import array_of, copied_vector, count, finite, finite_vector, positive, rows
 from gaik_core.errors import GaikError, ShapeError
 from gaik_core.kernels import descent as kernels
@@ -33,6 +33,9 @@ Array = NDArray[np.float64]
 __all__ = ["Solution", "Solutions", "Trace", "random_starts", "solve", "solve_batch", "solve_path"]
 
 MOST_ITERATIONS = 2**53  # a float64 counts no further
+
+WIDEST_SLIDE = 1e9
+"""Half the range (m) from which a slide's limits no longer say where it may be; of what turns, a turn says no more."""
 
 _ADAM = Adam()
 _MARQUARDT = LevenbergMarquardt()
@@ -72,7 +75,8 @@ def solve(
         posture: (dof,) angles to prefer where the arm is redundant. A solve that converges then moves toward them for
             as long as the tip stays within the tolerance. Not together with trace.
         orientation_tolerance: for a Pointing or a Pose, the angle below which the solve converges (rad).
-        orientation_weight: how many metres one radian counts for in the loss; by default the chain's reach over π.
+        orientation_weight: how many metres one radian counts for in the loss; by default the sum of the links'
+            lengths over π, and 1 where that is zero.
 
     Returns:
         A Solution; one that has not converged says why in its status.
@@ -81,7 +85,7 @@ def solve(
         GaikError: an argument of the wrong shape, not finite, out of range or unknown; the message names it.
     """
     if not isinstance(chain, KinematicChain):
-        raise _no_chain(chain)
+        raise no_chain(chain)
     kind, wanted = pack_target(target)
     angles = copied_vector("start", chain.home if start is None else start, chain.dof)
     given = (
@@ -149,7 +153,7 @@ def solve_batch(
         GaikError: as for `solve`; not one NaN among the targets is taken.
     """
     if not isinstance(chain, KinematicChain):
-        raise _no_chain(chain)
+        raise no_chain(chain)
     points = rows("targets", targets, 3)
     first = array_of("start", chain.home if start is None else start)
     if first.shape not in ((chain.dof,), (len(points), chain.dof)):
@@ -203,7 +207,7 @@ def solve_path(
         GaikError: as for `solve`.
     """
     if not isinstance(chain, KinematicChain):
-        raise _no_chain(chain)
+        raise no_chain(chain)
     points = rows("targets", targets, 3)
     first = finite_vector("start", chain.home if start is None else start, chain.dof)
     result = BatchResult.of(len(points), chain.dof)
@@ -219,14 +223,19 @@ def solve_path(
 
 @lru_cache(maxsize=64)
 def random_starts(chain: KinematicChain, count: int, seed: int) -> Array:
-    """Angles (count, dof) drawn evenly from inside the limits; where one is missing, from a turn beside the other.
+    """Angles (count, dof) drawn evenly from inside the limits; where these are wide, from a range of 2π about home.
 
     Kept, and so read-only: a solve that needs no restart does not pay for drawing them.
     """
     turn = 2.0 * math.pi
-    low = np.where(np.isfinite(chain.lower), chain.lower, np.minimum(-math.pi, chain.upper - turn))
-    high = np.where(np.isfinite(chain.upper), chain.upper, np.maximum(math.pi, chain.lower + turn))
-    starts = np.random.default_rng(seed).uniform(low, high, (count, chain.dof))
+    slides = np.array([joint.kind == "prismatic" for joint in chain.joints if not joint.passive])
+    wide = chain.upper / 2.0 - chain.lower / 2.0 > np.where(slides, WIDEST_SLIDE, turn)
+    low = np.where(wide, np.clip(chain.home - math.pi, chain.lower, chain.upper - turn), chain.lower)
+    high = np.where(wide, low + turn, chain.upper)
+    try:
+        starts = np.random.default_rng(seed).uniform(low, high, (count, chain.dof))
+    except (MemoryError, ValueError):
+        raise GaikError(f"restarts is {count}; there is no memory for so many starts") from None
     starts.flags.writeable = False
     return starts
 
@@ -260,11 +269,6 @@ def _solve_traced(
         x, y, z = (target[:3] - chain.forward(kept.angles)).T
         kept = kept._replace(error=np.hypot(np.hypot(x, y), z))
     return Solution(angles, error, iterations, status == kernels.CONVERGED, STATUS[status], kept, turn)
-
-
-def _no_chain(what: object) -> GaikError:
-    load = f"; load one with KinematicChain.load({what!r})" if isinstance(what, str) else ""
-    return GaikError(f"chain is {what!r}; expected a KinematicChain{load}")
 
 
 def _raise_not_finite(target: Array, start: Array) -> None:
@@ -319,7 +323,11 @@ def _stop(
 
 
 def _weight(chain: KinematicChain, given: float | None) -> float:
-    """Metres that one radian counts for."""
+    """Metres that one radian counts for.
+
+    Travel does not count: a gantry of 10 m would turn no further than to a tenth of a radian of a pose.
+    """
     if given is not None:
         return positive("orientation_weight", given)
-    return chain.reach / math.pi if 0.0 < chain.reach < math.inf else 1.0
+    length = sum(math.hypot(*joint.link) for joint in chain.joints)
+    return length / math.pi if length > 0.0 else 1.0

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from gaik_core.checks import copied_vector, finite_vector, unit_vector
 from gaik_core.kernels.task import POINTING, POSE, POSITION
-from gaik_core.versors import Motor
+from gaik_core.versors import Motor, Orientation, unit_quaternion
 
 Array = NDArray[np.float64]
 
@@ -45,18 +45,19 @@ class Pose:
 
     Attributes:
         position: (3,) in m, in the base frame.
-        orientation: (4,) quaternion (w, x, y, z) from the tip frame to the base frame; made a unit quaternion.
+        orientation: (4,) quaternion (w, x, y, z) from the tip frame to the base frame, a Quaternion or a Rotor; made a
+            unit quaternion.
     """
 
     position: ArrayLike
-    orientation: ArrayLike = (1.0, 0.0, 0.0, 0.0)
+    orientation: Orientation = (1.0, 0.0, 0.0, 0.0)
 
     def packed(self) -> Array:
         """The seven numbers the kernels take."""
         return np.concatenate(
             [
                 finite_vector("position", self.position, 3),
-                unit_vector("orientation", self.orientation, 4),
+                unit_quaternion("orientation", self.orientation),
             ]
         )
 

@@ -183,7 +183,7 @@ def rule_by_name(name: str, learning_rate: float | Literal["auto"] | None = None
         UnknownNameError: no such rule; the message lists those there are.
         GaikError: a learning rate the rule cannot take.
     """
-    if name not in RULES:
+    if not isinstance(name, str) or name not in RULES:
         raise UnknownNameError("update rule", name, RULES)
     rule = RULES[name]
     if learning_rate is None or "learning_rate" not in rule.__dataclass_fields__:  # type: ignore[attr-defined]

@@ -5,11 +5,14 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from gaik_core.chain import KinematicChain
+from gaik_core.chain import KinematicChain, no_chain
 from gaik_core.checks import finite_vector, is_number, positive
 from gaik_core.errors import GaikError
 
 Array = NDArray[np.float64]
+
+ROUNDING = 1e-12
+"""Singular values below this share of the largest are zero but for rounding."""
 
 NEAR_SINGULAR = 0.02
 """Singular values below this share of the largest are inverted more and more gently."""
@@ -18,7 +21,8 @@ NEAR_SINGULAR = 0.02
 def damped_pseudo_inverse(jacobian: Array, damping: float | None = None) -> Array:
     """Pseudo-inverse (d, r) of a Jacobian (r, d) that stays bounded at singular poses.
 
-    With a `damping` λ > 0 in m, every singular value is inverted as σ / (σ² + λ²) (Wampler 1986). Without, the inverse
+    With a `damping` λ in m, every singular value is inverted as σ / (σ² + λ²) (Wampler 1986); at 0 that is the
+    Moore-Penrose inverse, which takes singular values under 1e-12 σ_max for zero. Without a damping, the inverse
     is exact but for singular values under ε = 0.02 σ_max, inverted as σ / ε², which is continuous and goes to zero
     (after Maciejewski and Klein 1988).
 
@@ -33,7 +37,7 @@ def damped_pseudo_inverse(jacobian: Array, damping: float | None = None) -> Arra
     else:
         damping = _damping(damping)
         gains = np.zeros_like(sigma)
-        np.divide(sigma, sigma**2 + damping * damping, out=gains, where=sigma > 0.0)
+        np.divide(sigma, sigma**2 + damping * damping, out=gains, where=sigma > ROUNDING * sigma[0])
     result: Array = (vt.T * gains) @ u.T
     return result
 
@@ -54,6 +58,8 @@ def gradient_velocity(
     Raises:
         GaikError: a β that is not above 0 and finite, or arguments that do not fit the chain.
     """
+    if not isinstance(chain, KinematicChain):
+        raise no_chain(chain)
     beta = positive("beta", beta)
     error = finite_vector("target", target, 3) - chain.forward(angles, algebra)
     result: Array = beta * (error @ chain.jacobian(angles, algebra))

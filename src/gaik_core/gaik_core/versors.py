@@ -23,6 +23,7 @@ from gaik_core.cga.blades import einf
 from gaik_core.cga.multivector import Operand, wrap
 from gaik_core.cga.objects import unit
 from gaik_core.cga.products import GEOMETRIC, product, sandwich
+from gaik_core.checks import unit_vector
 from gaik_core.errors import GaikError
 from gaik_core.quaternion import Quaternion
 
@@ -31,6 +32,10 @@ _ROTOR_SIGNS = (1.0, -1.0, 1.0, -1.0)
 """R = w - (x e23 - y e13 + z e12) for the quaternion w + xi + yj + zk."""
 _TRANSLATION_4 = [E1 | E4, E2 | E4, E3 | E4, E123 | E4]
 _TRANSLATION_5 = [E1 | E5, E2 | E5, E3 | E5, E123 | E5]
+
+
+_NO_TURN = 1e-12
+"""Screws that turn by less (rad) are translations: of two motors with one orientation, rounding leaves about 1e-16."""
 
 
 class VersorError(GaikError):
@@ -198,7 +203,7 @@ class Motor(Multivector):
         bivector = self._shorter().log()
         turn, slide = -2.0 * line_direction(bivector), -2.0 * line_moment(bivector)
         angle = np.linalg.norm(turn, axis=-1)
-        turns = angle[..., None] > 0.0
+        turns = angle[..., None] > _NO_TURN
         axis = np.where(turns, turn, slide)
         length = np.linalg.norm(axis, axis=-1, keepdims=True)
         direction = np.where(length > 0.0, axis / np.where(length > 0.0, length, 1.0), (0.0, 0.0, 1.0))
@@ -286,3 +291,16 @@ def _vanishes(part: Array, of: Multivector) -> bool:
     """Whether a part of something is zero, to rounding; a NaN is not."""
     size = np.maximum(1.0, np.sum(of.components**2, axis=-1, keepdims=True))
     return bool(np.all(np.abs(part) <= 1e-9 * size))
+
+
+Orientation = ArrayLike | Quaternion | Rotor
+"""What tells how a frame is turned: a quaternion (4,), w first, a Quaternion or a Rotor."""
+
+
+def unit_quaternion(what: str, orientation: Orientation) -> Array:
+    """An orientation as (4,), w first, made a unit quaternion; GaikError where it is zero, not finite, or none."""
+    if isinstance(orientation, Quaternion):
+        orientation = orientation.components
+    elif isinstance(orientation, Rotor):
+        orientation = orientation.rotation
+    return unit_vector(what, orientation, 4)

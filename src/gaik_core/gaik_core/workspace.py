@@ -14,7 +14,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from gaik_core.chain import KinematicChain
+from gaik_core.chain import KinematicChain, no_chain
 from gaik_core.checks import count
 from gaik_core.errors import GaikError
 from gaik_core.solver import solve_batch
@@ -108,6 +108,8 @@ def find_workspace(
     Raises:
         GaikError: a number that is too small, or a joint that slides without a limit.
     """
+    if not isinstance(chain, KinematicChain):
+        raise no_chain(chain)
     for what, value, least in (("cells", cells, 4), ("samples", samples, 100)):
         if value < least:
             raise GaikError(f"{what} is {value}; it may be {least} or more")

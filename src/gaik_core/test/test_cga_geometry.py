@@ -165,6 +165,28 @@ def test_two_lines_in_a_plane_meet_in_a_flat_point():
     np.testing.assert_allclose(cga.flat_point_position(cga.meet(p, q)), A, atol=1e-8)
 
 
+@pytest.mark.parametrize("far", [0.0, 1e2, 1e3, 1e4])
+def test_distances_and_spheres_far_from_the_origin(far):
+    """Products of points at distance d lose d² times the rounding of 1; positions lose none."""
+    place = np.array([1.0, 2.0, 3.0]) * far
+    p, q = cga.up(place), cga.up(place + np.array([0.0, 0.0, 1e-3]))
+    np.testing.assert_allclose(cga.distance(p, q), 1e-3, rtol=1e-6, atol=1e-7 * far / 1e4)
+    sphere = cga.sphere(place, 1.0)
+    np.testing.assert_allclose(cga.centre(sphere), place, rtol=1e-6)
+    if far < 1e4:  # beyond, r² is lost in d²
+        np.testing.assert_allclose(cga.radius(sphere), 1.0, rtol=1e-6 * max(far, 1.0))
+
+
+def test_what_touches_meets_in_a_circle_without_radius():
+    """By rounding, the squared radius comes out on either side of zero."""
+    for normal in np.random.default_rng(4).normal(size=(200, 3)):
+        normal /= np.linalg.norm(normal)
+        touching = cga.meet(
+            cga.sphere([0.3, -0.2, 0.1], 1.0), cga.plane(normal, normal @ [0.3, -0.2, 0.1] + 1.0)
+        )
+        assert cga.radius(touching) < 1e-6
+
+
 def test_sphere_and_plane_meet_in_a_circle():
     circle = cga.meet(cga.sphere([1.0, 2, 3], 5.0), cga.plane([0, 0, 1], 0.0))
     np.testing.assert_allclose(cga.centre(circle), [1, 2, 0], atol=1e-12)

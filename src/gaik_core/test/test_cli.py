@@ -58,6 +58,16 @@ def on_a_terminal(arguments, environment=()):
     return b"".join(parts).decode()
 
 
+SLIDER = """
+<robot name="slider">
+  <link name="base"/><link name="carriage"/><link name="tool"/>
+  <joint name="lift" type="prismatic"><parent link="base"/><child link="carriage"/><axis xyz="0 0 1"/>
+    <limit lower="0" upper="0.5" effort="1" velocity="1"/></joint>
+  <joint name="turn" type="continuous"><parent link="carriage"/><child link="tool"/><axis xyz="0 0 1"/></joint>
+</robot>
+"""
+
+
 # --- all of it -------------------------------------------------------------------------------------------------------
 
 
@@ -278,6 +288,19 @@ def test_solve_takes_the_papers_settings(capsys):
     )
     assert degrees["iterations"] == radians["iterations"] == 24
     assert degrees["angles"] == radians["angles"]
+
+
+def test_a_urdf_is_solved_and_described_and_a_slide_starts_in_metres(capsys, tmp_path):
+    robot = tmp_path / "slider.urdf"
+    robot.write_text(SLIDER)
+    options = ["--tip", "tool", "--max-iterations", "0", "--start-deg", "0.3", "90"]
+    start = solved(capsys, str(robot), "0", "0", "0.4", *options)["angles"]
+    assert start == {"lift": 0.3, "turn": pytest.approx(math.pi / 2)}
+    assert solved(capsys, str(robot), "0", "0", "0.4")["converged"]
+    assert main(["robots", str(robot), "--tip", "carriage"]) == 0
+    said = capsys.readouterr().out
+    assert "lift" in said and "turn" not in said
+    fails(capsys, ["solve", "touch", "0", "0", "0", "--tip", "tool"], "--tip is for a URDF")
 
 
 def test_solve_says_what_cannot_be_reached(capsys):

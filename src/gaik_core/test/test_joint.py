@@ -29,6 +29,8 @@ Z = (0.0, 0.0, 1.0)
         ({"lower": 1.0, "upper": -1.0}, "limits are"),
         ({"axis_lower": 1.0, "axis_upper": -1.0}, "axis_limits are"),
         ({"lower": np.nan}, "limits are"),
+        ({"lower": None}, r"limits are \[None, inf\]; expected two numbers"),
+        ({"coupling": None}, "coupling is None; expected factors by the names of joints"),
         ({"lower": 1.0, "upper": 2.0}, "home is 0; expected within its limits"),
         ({"passive": True, "coupling": {"b": 1.0}, "lower": -0.1}, "limits are .*; a passive joint has no value"),
     ],
@@ -36,6 +38,11 @@ Z = (0.0, 0.0, 1.0)
 def test_impossible_joints_are_named(fields, message):
     with pytest.raises(GaikError, match=f"joint 'a': {message}"):
         Joint("a", **{"axis": Z, **fields})
+
+
+def test_one_joint_is_not_yet_a_sequence():
+    with pytest.raises(GaikError, match="joints is the joint 'a' alone; expected a sequence of joints"):
+        KinematicChain(Joint("a", Z))
 
 
 def test_a_direction_of_any_size_is_made_a_unit_vector():

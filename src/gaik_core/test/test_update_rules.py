@@ -130,6 +130,8 @@ def test_by_name_with_a_learning_rate_where_the_rule_has_one():
         UnknownNameError, match=r"'adm' \(did you mean 'adam'\?\); known: gradient_descent, momentum"
     ):
         rule_by_name("adm")
+    with pytest.raises(UnknownNameError, match="known: gradient_descent"):
+        rule_by_name(["adam"])
 
 
 @pytest.mark.parametrize(

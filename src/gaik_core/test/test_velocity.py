@@ -52,6 +52,13 @@ def test_what_no_joint_can_do_is_left_out():
     assert np.allclose(PLANAR.inverse_velocity([0.3, 0.5], [0.0, 0.0, 1.0]), 0.0)
 
 
+def test_without_any_damping_it_is_the_pseudo_inverse_at_singular_poses_too():
+    straight = KinematicChain.load("planar3")
+    jacobian = straight.jacobian([0.7, 0.0, 0.0])
+    rates = straight.inverse_velocity([0.7, 0.0, 0.0], [1.0, 1.0, 1.0], damping=0.0)
+    assert np.allclose(rates, np.linalg.pinv(jacobian, rcond=1e-10) @ [1.0, 1.0, 1.0], atol=1e-9)
+
+
 @pytest.mark.parametrize("algebra", ALGEBRAS)
 def test_gradient_velocity_is_one_descent_step_per_period(algebra):
     """Eq. 38: β = α/Δt makes θ' Δt the step of eq. 34."""
@@ -72,3 +79,5 @@ def test_bad_arguments_are_named():
     for beta in (0.0, np.nan, "x", None):
         with pytest.raises(GaikError, match=f"beta is {beta!r}; expected a number above 0"):
             gradient_velocity(TOUCH, REGULAR, [0, 0, 0], beta)
+    with pytest.raises(GaikError, match="chain is 'touch'; expected a KinematicChain; load one"):
+        gradient_velocity("touch", REGULAR, [0, 0, 0], 1.0)

@@ -207,6 +207,18 @@ def test_screws_without_a_turn():
     assert (angle, slide) == (0.0, 0.0)
 
 
+@pytest.mark.parametrize("seed", range(6))
+def test_between_two_motors_of_one_orientation_there_is_no_turn(seed):
+    """Rounding leaves a turn of some 1e-17 rad between them, about an axis 1e14 m away."""
+    turned = np.random.default_rng(seed).normal(size=4)
+    turned /= np.linalg.norm(turned)
+    a, b = (Motor.from_rotation_translation(turned, [x, 0.2, 0.5]) for x in (0.3, 0.4))
+    line, angle, slide = (b * ~a).to_screw()
+    assert angle < 1e-15
+    np.testing.assert_allclose(slide * cga.line_direction(line), [0.1, 0.0, 0.0], atol=1e-12)
+    np.testing.assert_allclose(cga.line_point(line), 0.0, atol=1e-12)
+
+
 def test_interpolation_is_a_screw_at_constant_speed():
     start, line, fractions = MOTORS[0], cga.axis_line(PLACES[1], AXES[1]), np.linspace(0, 1, 9)
     end = start * Motor.from_line(line, 2.0, 0.5)

@@ -84,7 +84,7 @@ class Multivector:
     @property
     def scalar(self) -> Array:
         """The scalar part, shape `(…)`."""
-        return self._components[..., 0][()]
+        return self.components[..., 0][()]
 
     def coefficient(self, blade: str) -> Array:
         """The coefficient of a basis blade such as "e12" (or "e21", its negative), shape `(…)`."""

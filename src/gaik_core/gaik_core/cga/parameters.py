@@ -15,6 +15,9 @@ from gaik_core.cga.multivector import Multivector
 from gaik_core.cga.points import down, graded_components, vector_components
 from gaik_core.errors import GaikError
 
+ROUNDING = 1e-14
+"""Of a product of two multivectors, as a share of their components' squares: what touches has a radius of zero."""
+
 _VECTOR = [E1, E2, E3]
 _WITH_E4 = [E1 | E4, E2 | E4, E3 | E4]
 _WITH_E5 = [E1 | E5, E2 | E5, E3 | E5]
@@ -75,9 +78,10 @@ def radius_squared(round_object: Multivector) -> Array:
 def radius(round_object: Multivector) -> Array:
     """The radius `(…)` of a sphere, circle or point pair (half the distance of its points)."""
     squared = radius_squared(round_object)
-    if np.any(squared < 0.0):
+    rounding = ROUNDING * np.sum(round_object.components**2, axis=-1) / _weight_squared(round_object)
+    if np.any(squared < -rounding):
         raise GaikError(f"the object is imaginary: its squared radius is {np.min(squared):.6g}")
-    return np.sqrt(squared)
+    return np.sqrt(np.maximum(squared, 0.0))
 
 
 def circle_normal(circle: Multivector) -> Array:
@@ -114,7 +118,7 @@ def _weight_squared(round_object: Multivector) -> Array:
     """(einf ⌋ X)², zero for flat objects, which are refused."""
     towards = einf.left_contraction(round_object)
     squared = towards.scalar_product(towards)
-    if np.any(np.abs(squared) <= 1e-15 * np.sum(round_object.components**2, axis=-1)):
+    if np.any(np.abs(squared) <= 1e-24 * np.sum(round_object.components**2, axis=-1)):
         raise GaikError(
             "a flat object has neither centre nor radius; expected a sphere, circle or point pair"
         )

@@ -10,15 +10,13 @@ import numpy as np
 
 from gaik_core import KinematicChain
 from gaik_core.cli.command import Command
+from gaik_core.cli.robot import add_robot, load_robot
 from gaik_core.cli.terminal import BOLD, coloured, print_json, print_table
 
 
 def configure(parser: ArgumentParser) -> None:
     """Its arguments."""
-    robot: Any = parser.add_argument(
-        "robot", nargs="?", help="a robot's name or the path of a robot file; all by default"
-    )
-    robot.completer = lambda **_: KinematicChain.names()
+    add_robot(parser, optional=True)
     parser.add_argument("--json", action="store_true", help="print JSON")
 
 
@@ -33,9 +31,9 @@ def run(arguments: Namespace) -> int:
                 ("robot", "joints", "reach (m)", "limits", "description"), [_row(chain) for chain in chains]
             )
     elif arguments.json:
-        print_json(describe(KinematicChain.load(arguments.robot)))
+        print_json(describe(load_robot(arguments)))
     else:
-        _print_one(KinematicChain.load(arguments.robot))
+        _print_one(load_robot(arguments))
     return 0
 
 

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from argparse import ArgumentParser, Namespace
+from itertools import zip_longest
 from typing import Any, Literal
 
 import numpy as np
@@ -18,7 +20,8 @@ from gaik_core import (
     rule_by_name,
     solve,
 )
-from gaik_core.cli.command import Command, robot_names
+from gaik_core.cli.command import Command
+from gaik_core.cli.robot import add_robot, load_robot
 from gaik_core.cli.terminal import GREEN, RED, coloured, print_json, print_table
 from gaik_core.errors import GaikError
 from gaik_core.targets import Target
@@ -26,10 +29,7 @@ from gaik_core.targets import Target
 
 def configure(parser: ArgumentParser) -> None:
     """Its arguments."""
-    robot: Any = parser.add_argument(
-        "robot", help="a robot's name (see gaik robots) or the path of a robot file"
-    )
-    robot.completer = robot_names
+    add_robot(parser)
     for axis in "xyz":
         parser.add_argument(
             axis, type=float, metavar=axis.upper(), help=f"where the tip should be, along {axis} (m)"
@@ -37,9 +37,19 @@ def configure(parser: ArgumentParser) -> None:
     _add_target(parser)
     start = parser.add_mutually_exclusive_group()
     start.add_argument(
-        "--start", nargs="+", type=float, metavar="RAD", help="start, a value per joint (default: its home)"
+        "--start",
+        nargs="+",
+        type=float,
+        metavar="RAD",
+        help="start, a value per joint, m where it slides (default: its home)",
     )
-    start.add_argument("--start-deg", nargs="+", type=float, metavar="DEG", help="the same in degrees")
+    start.add_argument(
+        "--start-deg",
+        nargs="+",
+        type=float,
+        metavar="DEG",
+        help="the same in degrees; m where a joint slides",
+    )
     _add_method(parser)
     parser.add_argument("--no-limits", action="store_true", help="pass over the joint limits")
     parser.add_argument("--json", action="store_true", help="print JSON")
@@ -98,11 +108,11 @@ def _learning_rate(text: str) -> float | Literal["auto"]:
 
 def run(arguments: Namespace) -> int:
     """Solve and print; 1 where the target was not reached."""
-    chain = KinematicChain.load(arguments.robot)
+    chain = load_robot(arguments)
     solution = solve(
         chain,
         target(arguments),
-        start(arguments),
+        start(chain, arguments),
         arguments.algebra,
         rule(arguments),
         arguments.tolerance,
@@ -133,10 +143,15 @@ def target(arguments: Namespace) -> Target:
     return position(arguments)
 
 
-def start(arguments: Namespace) -> list[float] | None:
-    """Angles to start from (rad); None for the robot's home."""
+def start(chain: KinematicChain, arguments: Namespace) -> list[float] | None:
+    """Values to start from (rad, or m where a joint slides); None for the robot's home."""
     if arguments.start_deg is not None:
-        return [float(np.radians(value)) for value in arguments.start_deg]
+        # Of too many values the solve complains.
+        slides = [joint.kind == "prismatic" for joint in chain.joints if not joint.passive]
+        return [
+            value if slide else math.radians(value)
+            for value, slide in zip_longest(arguments.start_deg, slides[: len(arguments.start_deg)])
+        ]
     result: list[float] | None = arguments.start
     return result
 

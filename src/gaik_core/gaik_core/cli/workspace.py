@@ -7,7 +7,8 @@ from argparse import ArgumentParser, Namespace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from gaik_core.cli.command import Command, robot_names
+from gaik_core.cli.command import Command
+from gaik_core.cli.robot import add_robot, load_robot
 from gaik_core.cli.terminal import BOLD, coloured, complain, print_json, print_table, progress
 from gaik_core.errors import GaikError
 
@@ -18,12 +19,7 @@ if TYPE_CHECKING:
 
 def configure(parser: ArgumentParser) -> None:
     """Its arguments."""
-    robot: Any = parser.add_argument(
-        "robot", help="a robot's name (see gaik robots), a robot file, or a URDF (ends in .urdf)"
-    )
-    robot.completer = robot_names
-    parser.add_argument("--base", metavar="LINK", help="of a URDF: where the arm begins (default: its root)")
-    parser.add_argument("--tip", metavar="LINK", help="of a URDF: where it ends (default: its only leaf)")
+    add_robot(parser)
     parser.add_argument(
         "--cells",
         type=int,
@@ -60,7 +56,7 @@ def configure(parser: ArgumentParser) -> None:
 
 def run(arguments: Namespace) -> int:
     """Find it, draw it, and print the numbers; 1 where the time did not suffice."""
-    chain = load(arguments)
+    chain = load_robot(arguments)
     began = time.monotonic()
     workspace = find(chain, arguments)
     data = as_data(chain, workspace, arguments)
@@ -75,21 +71,6 @@ def run(arguments: Namespace) -> int:
     else:
         print_numbers(chain, data, time.monotonic() - began)
     return 0 if workspace.complete else 1
-
-
-def load(arguments: Namespace) -> KinematicChain:
-    """The arm asked for."""
-    from gaik_core import KinematicChain
-
-    if arguments.robot.endswith(".urdf"):
-        path = Path(arguments.robot)
-        if not path.is_file():
-            raise GaikError(f"{path}: there is no such file")
-        return KinematicChain.from_urdf(path, arguments.base, arguments.tip)
-    for option in ("base", "tip"):
-        if getattr(arguments, option) is not None:
-            raise GaikError(f"--{option} is for a URDF; {arguments.robot!r} is none")
-    return KinematicChain.load(arguments.robot)
 
 
 def find(chain: KinematicChain, arguments: Namespace) -> Workspace:
