@@ -15,6 +15,7 @@ from gaik_core.errors import GaikError
 from gaik_ros import qos
 from gaik_ros.conversions import array_to_point, joint_values
 from gaik_ros.joint_message import JointMessageError
+from gaik_ros.others import other_setpoints
 from gaik_ros.recorded_runs import ARRIVED
 from gaik_ros.recorder import Recorder
 from gaik_ros.recording import Recording
@@ -34,12 +35,12 @@ class Replayer:
 
     def __init__(self, node: Node, chain: KinematicChain) -> None:
         """`chain` computes the tip, for a device that does not publish it."""
-        self._chain = chain
+        self._chain, self._node = chain, node
         self._publisher = node.create_publisher(Point, "setpoint", qos.SETPOINT)
         self._recorder = Recorder(node)
 
     def wait_for_suite(self) -> None:
-        """Wait until a suite hears setpoints and tells its joint states. GaikError: there is none."""
+        """Wait until a suite hears setpoints and tells its joint states. GaikError: none, or others lead it."""
         end = time.monotonic() + PATIENCE
         # One of the subscriptions to setpoints is the recorder's own.
         while self._publisher.get_subscription_count() < 2 or not self._recorder.count("joint_states"):
@@ -47,6 +48,8 @@ class Replayer:
                 what = "hears" if self._recorder.count("joint_states") else "tells its joint_states beside"
                 raise GaikError(f"no suite {what} {self._publisher.topic_name} (waited {PATIENCE:g} s)")
             time.sleep(LOOK)
+        if reason := other_setpoints(self._node, lambda: self._recorder.count("setpoint")):
+            raise GaikError(reason)
 
     def go_to(self, point: Array) -> None:
         """Send one setpoint (3,) m until the tip is at rest there, or for as long as that should take."""

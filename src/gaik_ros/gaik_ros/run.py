@@ -35,19 +35,26 @@ SWITCH_INTERVAL = (
 
 BAD_ARGUMENTS = 2  # exit code for a mistake of the user
 
+UnknownROSArgsError = rclpy_implementation.UnknownROSArgsError
+
 ROS_ARGUMENT_ERRORS = (
     NameValidationException,
     InvalidParameterTypeException,  # of the parameters that rclpy itself declares, such as use_sim_time
     rclpy_implementation.RCLInvalidROSArgsError,
-    rclpy_implementation.UnknownROSArgsError,
+    UnknownROSArgsError,
     rclpy_implementation.RCLError,
 )
 """What rclpy raises, beside ValueError, where a user's arguments, parameters or names are wrong."""
 
 
-def check_namespace(namespace: str) -> None:
-    """Raise NameValidationException where it can be none: said here in one line, by a node in several."""
-    validate_namespace(f"/{namespace.strip('/')}")
+def check_namespace(namespace: str) -> str:
+    """A namespace as nodes take it, with slashes between names only; empty for none.
+
+    Raises NameValidationException where it can be none: said here in one line, by a node in several.
+    """
+    clean = namespace.strip("/")
+    validate_namespace(f"/{clean}")
+    return clean
 
 
 def make_executor(context: Context | None = None) -> Executor:
@@ -133,12 +140,20 @@ def running(nodes: Sequence[Node], context: Context | None = None) -> Iterator[R
     thread.start()
     try:
         yield runner
-    finally:
-        runner.stop()
-        thread.join()
-        runner.destroy()
+    except BaseException as error:
+        _end(runner, thread)
+        if failures:  # what the block complains of may come of that
+            raise error from failures[0]
+        raise
+    _end(runner, thread)
     if failures:
         raise failures[0]
+
+
+def _end(runner: Runner, thread: threading.Thread) -> None:
+    runner.stop()
+    thread.join()
+    runner.destroy()
 
 
 class StopRequest:
@@ -215,7 +230,7 @@ def run(
             node = factory()
         except (ValueError, *ROS_ARGUMENT_ERRORS) as error:
             rclpy.try_shutdown()
-            return _complain(error)
+            return _complain(explained(error))
         try:
             _spin([node], None, request)
         finally:
@@ -229,8 +244,13 @@ def _refuse_stray(arguments: Sequence[str]) -> None:
         raise ValueError(f"unknown argument {stray[0]}; ROS arguments follow --ros-args")
 
 
-def _complain(error: Exception) -> int:
-    lines = [line.strip() for line in str(error).splitlines() if line.strip()]
+def explained(error: Exception) -> str:
+    """What was wrong with a user's arguments, in one line: of arguments that ROS does not know rclpy says no more."""
+    line = " ".join(str(error).split())
+    return f"unknown ROS arguments {line}" if isinstance(error, UnknownROSArgsError) else line
+
+
+def _complain(reason: str) -> int:
     name = sys.argv[0].rsplit("/", maxsplit=1)[-1]
-    print(f"{name}: {' '.join(lines)}", file=sys.stderr)
+    print(f"{name}: {reason}", file=sys.stderr)
     return BAD_ARGUMENTS

@@ -10,6 +10,9 @@ import time
 import matplotlib.image
 import numpy as np
 import pytest
+import rclpy
+from rclpy.context import Context
+from rclpy.node import Node
 
 from gaik_core import KinematicChain
 from gaik_core.paths import path_by_name
@@ -36,6 +39,20 @@ def simulated():
         for k, result in enumerate(["reached"] * 1258 + ["unreachable"] * 2)
     )
     return Results(runs, {name: LoopRate(1000.0, 999.5, 1.2e-3) for name in NODES}, verdicts, 0.35)
+
+
+def wait_for_publisher(topic):
+    context = Context()
+    rclpy.init(context=context)
+    node = Node("looking", context=context)
+    try:
+        end = time.monotonic() + PATIENCE
+        while not node.count_publishers(topic):
+            assert time.monotonic() < end
+            time.sleep(0.05)
+    finally:
+        node.destroy_node()
+        rclpy.shutdown(context=context)
 
 
 def check_schema(figures, paths):
@@ -116,6 +133,9 @@ def test_the_demo_follows_and_reports(tmp_path):
         (["--out", "/proc/nowhere"], "/proc/nowhere"),
         (["--ros-args", "-p", "pid_controler:gains.p:=5.0"], "did you mean 'pid_controller'?"),
         (["--ros-args", "-p", "arm:gains.p:=5.0"], "no node 'arm' here, but touch_sim, pid_controller"),
+        (["--ros-args", "-p", "pid_controller:rate:=500.0"], "rate is set by the options here, see --help"),
+        (["--ros-args", "-p", "lap_time:=5.0"], "lap_time is set by the options here"),
+        (["--ros-args", "foo"], "unknown ROS arguments ['foo']"),
     ],
 )
 def test_a_wrong_option_is_one_line_and_exit_code_2(options, words, tmp_path):
@@ -125,6 +145,43 @@ def test_a_wrong_option_is_one_line_and_exit_code_2(options, words, tmp_path):
     assert words in done.stderr
     assert len(done.stderr.strip().splitlines()) == 1
     assert not done.stdout
+
+
+def test_a_device_that_is_at_work_is_left_alone(tmp_path):
+    """Neither a suite that runs in the namespace nor a demo that began at the same time shares its device."""
+    twin = subprocess.Popen(
+        [sys.executable, "-m", "touch_sim.touch_sim_node", "--ros-args", "-r", "__ns:=/taken"],
+        stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+    )  # fmt: skip
+    command = [*DEMO, "--path", "circle", "--period", "1", "--out", str(tmp_path), "--namespace", "taken/"]
+    try:
+        wait_for_publisher("/taken/joint_states")
+        done = subprocess.run(command, capture_output=True, text=True, timeout=PATIENCE, check=False)
+    finally:
+        twin.kill()
+        twin.wait()
+    assert done.returncode == 2
+    (line,) = done.stderr.strip().splitlines()
+    assert line == (
+        "demo: another node publishes joint_states in the namespace /taken: end it, or give another --namespace"
+    )
+
+
+def test_two_demos_at_once_do_not_share_a_device(tmp_path):
+    command = [*DEMO, "--path", "circle", "--period", "3", "--namespace", "shared"]
+    both = [
+        subprocess.Popen(
+            [*command, "--out", str(tmp_path / name)],
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+        )
+        for name in "ab"
+    ]
+    ends = [process.communicate(timeout=PATIENCE)[1] for process in both]
+    assert sum(process.returncode == 0 for process in both) <= 1
+    said = "".join(ends)
+    assert "another node publishes joint_" in said and "Traceback" not in said
 
 
 @pytest.mark.parametrize("module", ["rclpy", "matplotlib", "gaik_core", "numpy"])

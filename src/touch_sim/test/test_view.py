@@ -56,6 +56,7 @@ def test_it_serves_its_page_and_ends_quietly(number):
         (["--robot", "tuch"], "unknown robot 'tuch'"),
         (["--namespace", "1bad"], "1bad"),
         (["--ros-args", "-p", "viewr:port:=0"], "did you mean 'viewer'?"),
+        (["--ros-args", "-p", "viewer:port:=9123"], "port is set by the options here, see --help"),
     ],
 )
 def test_a_wrong_option_is_said_in_one_line(arguments, complaint):

@@ -73,14 +73,21 @@ def split_ros_arguments(arguments: Sequence[str]) -> tuple[list[str], list[str]]
     return list(arguments[:cut]), list(arguments[cut:])
 
 
-def check_addressees(ros_arguments: Sequence[str], nodes: Collection[str]) -> None:
-    """Raise ValueError for `-p NODE:NAME:=VALUE` where NODE is none of `nodes`: ROS would ignore it in silence."""
+def check_parameters(ros_arguments: Sequence[str], given: Mapping[str, Collection[str]]) -> None:
+    """Raise ValueError for a `-p NODE:NAME:=VALUE` or `-p NAME:=VALUE` that would be ignored in silence.
+
+    `given` has the parameters that the program itself sets, by the node's name: none of another node, none of these.
+    """
     for option, rule in pairwise(ros_arguments):
-        node, colon, _ = rule.split(":=")[0].partition(":")
-        if option in ("-p", "--param") and colon and node not in nodes:
-            near = get_close_matches(node, nodes, n=1)
+        if option not in ("-p", "--param"):
+            continue
+        node, colon, name = rule.split(":=")[0].rpartition(":")
+        if colon and node not in given:
+            near = get_close_matches(node, given, n=1)
             hint = f"; did you mean {near[0]!r}?" if near else ""
-            raise ValueError(f"-p {rule}: no node {node!r} here, but {', '.join(nodes)}{hint}")
+            raise ValueError(f"-p {rule}: no node {node!r} here, but {', '.join(given)}{hint}")
+        if any(name in given[each] for each in ([node] if colon else given)):
+            raise ValueError(f"-p {rule}: {name} is set by the options here, see --help")
 
 
 def complain(program: str, message: str, code: int) -> int:

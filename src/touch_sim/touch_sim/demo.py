@@ -12,6 +12,7 @@ import argparse
 import signal
 import sys
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from touch_sim.command_line import (
@@ -19,7 +20,7 @@ from touch_sim.command_line import (
     FAILED,
     INTERRUPTED,
     Parser,
-    check_addressees,
+    check_parameters,
     complain,
     complain_of_missing,
     split_ros_arguments,
@@ -53,26 +54,28 @@ def _demonstrate(options: argparse.Namespace, ros_arguments: list[str]) -> int:
     import rclpy
     from rclpy.signals import SignalHandlerOptions
 
-    from gaik_ros.run import ROS_ARGUMENT_ERRORS, check_namespace
+    from gaik_ros.others import refuse_company
+    from gaik_ros.run import ROS_ARGUMENT_ERRORS, check_namespace, explained
     from touch_sim.demo_output import write, write_bag
     from touch_sim.demo_progress import progress_for
     from touch_sim.demo_run import DemoError, run_demo
-    from touch_sim.suite import NODES, SuiteOptions
+    from touch_sim.suite import SuiteOptions
 
     if options.record:
         import rosbags  # noqa: F401 - said now if it is missing, and not after the run
     suite = SuiteOptions(**{name: getattr(options, name) for name in SuiteOptions.__dataclass_fields__})
     paths = ("circle", "lemniscate") if options.path == "both" else (options.path,)
     try:
-        check_namespace(suite.namespace)
-        check_addressees(ros_arguments, NODES)
+        suite = replace(suite, namespace=check_namespace(suite.namespace))
+        check_parameters(ros_arguments, suite.parameters(()))
         options.out.mkdir(parents=True, exist_ok=True)
         rclpy.init(args=["demo", *ros_arguments], signal_handler_options=SignalHandlerOptions.NO)
+        refuse_company(suite.namespace)
         results = run_demo(suite, paths, options.laps, progress_for(sys.stderr))
     except DemoError as reason:
         return complain("demo", str(reason), FAILED)
     except (ValueError, OSError, *ROS_ARGUMENT_ERRORS) as reason:
-        return complain("demo", str(reason), BAD_OPTION)
+        return complain("demo", explained(reason), BAD_OPTION)
     finally:
         rclpy.try_shutdown()
     print(write(results, options.out))
@@ -103,7 +106,7 @@ def _parser() -> Parser:
     )
     add(
         "--rate",
-        type=within(float, 10, 10_000),
+        type=within(float, 50, 10_000),
         default=1000.0,
         metavar="HZ",
         help="rate of controller and twin (1000)",

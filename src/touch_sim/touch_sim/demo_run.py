@@ -20,6 +20,7 @@ from std_srvs.srv import Trigger
 
 from gaik_core import KinematicChain, LevenbergMarquardt, solve_path
 from gaik_core.paths import path_by_name
+from gaik_ros.others import other_suite
 from gaik_ros.recorder import Recorder
 from gaik_ros.recording import Recording
 from gaik_ros.run import running
@@ -118,6 +119,8 @@ class Conductor:
 
     def follow(self, name: str, laps: int) -> Recording:
         """Go to the first point of a path, rest there, follow the path and return what was recorded of it."""
+        if reason := other_suite(self._suite.trajectory, own=1):  # one that began when this one did
+            raise DemoError(reason)
         options, path = self._suite.options, path_by_name(name)
         count = round(laps * options.period * options.setpoint_rate)
         self._approach(name, path.position(0.0))

@@ -11,13 +11,13 @@ from __future__ import annotations
 import argparse
 import os
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from touch_sim.command_line import (
     BAD_OPTION,
     Parser,
-    check_addressees,
+    check_parameters,
     complain,
     complain_of_missing,
     split_ros_arguments,
@@ -25,6 +25,8 @@ from touch_sim.command_line import (
 
 if TYPE_CHECKING:
     from rclpy.node import Node
+
+    from touch_sim.suite import SuiteOptions
 
 EPILOG = """\
 On the page: drag the ball (in the plane of the screen) or an arrow (along one axis), and the arm follows; or start a
@@ -51,16 +53,25 @@ def _view(options: argparse.Namespace, ros_arguments: list[str]) -> int:
     import rclpy
     from rclpy.signals import SignalHandlerOptions
 
-    from gaik_ros.run import ROS_ARGUMENT_ERRORS, Runner, StopRequest, check_namespace, stopped_by_signals
-    from touch_sim.suite import NODES
+    from gaik_ros.others import refuse_company
+    from gaik_ros.run import (
+        ROS_ARGUMENT_ERRORS,
+        Runner,
+        StopRequest,
+        check_namespace,
+        explained,
+        stopped_by_signals,
+    )
 
     request = StopRequest()
     with stopped_by_signals(request.make):
         try:
-            check_namespace(options.namespace)
-            check_addressees(ros_arguments, (*NODES, "viewer"))
+            suite = _suite_options(options, check_namespace(options.namespace))
+            viewer = _viewer_parameters(options)
+            check_parameters(ros_arguments, suite.parameters(()) | {"viewer": viewer})
             rclpy.init(args=["view", *ros_arguments], signal_handler_options=SignalHandlerOptions.NO)
-            nodes, address = _nodes(options)
+            refuse_company(suite.namespace)
+            nodes, address = _nodes(suite, viewer)
             print(f"The page is at {address}; Ctrl-C ends it.", flush=True)
             runner = Runner(nodes)
             request.serve(runner)
@@ -69,22 +80,26 @@ def _view(options: argparse.Namespace, ros_arguments: list[str]) -> int:
             finally:
                 runner.destroy()
         except (ValueError, OSError, *ROS_ARGUMENT_ERRORS) as reason:
-            return complain("view", str(reason), BAD_OPTION)
+            return complain("view", explained(reason), BAD_OPTION)
         finally:
             rclpy.try_shutdown()
     return 0
 
 
-def _nodes(options: argparse.Namespace) -> tuple[list[Node], str]:
-    """The suite's nodes and the viewer, and where the page is. ValueError: an option that a node refuses."""
-    from rclpy.parameter import Parameter
+def _suite_options(options: argparse.Namespace, namespace: str) -> SuiteOptions:
+    from touch_sim.suite import SuiteOptions
 
-    from gaik_ros.viewer.node import Viewer
+    return SuiteOptions(
+        robot=options.robot, rate=options.rate, feed_forward=options.feed_forward, namespace=namespace
+    )
+
+
+def _viewer_parameters(options: argparse.Namespace) -> dict[str, bool | int | str]:
+    """What is set of the viewer."""
     from touch_sim.description import ORIGIN_FRAME, touch_urdf
-    from touch_sim.suite import Suite, SuiteOptions
 
     touch = options.robot in ("touch", "touch_device")
-    parameters = {
+    return {
         "robot": options.robot,
         "host": options.host,
         "port": options.port,
@@ -92,17 +107,21 @@ def _nodes(options: argparse.Namespace) -> tuple[list[Node], str]:
         "urdf": touch_urdf() if touch else "",
         "origin_frame": ORIGIN_FRAME if touch else "",
     }
-    suite = Suite(
-        SuiteOptions(
-            robot=options.robot,
-            rate=options.rate,
-            feed_forward=options.feed_forward,
-            namespace=options.namespace,
-        )
-    )
+
+
+def _nodes(
+    options: SuiteOptions, viewer_parameters: Mapping[str, bool | int | str]
+) -> tuple[list[Node], str]:
+    """The suite's nodes and the viewer, and where the page is. ValueError: an option that a node refuses."""
+    from rclpy.parameter import Parameter
+
+    from gaik_ros.viewer.node import Viewer
+    from touch_sim.suite import Suite
+
+    suite = Suite(options)
     viewer = Viewer(
         namespace=options.namespace,
-        parameter_overrides=[Parameter(name, value=value) for name, value in parameters.items()],
+        parameter_overrides=[Parameter(name, value=value) for name, value in viewer_parameters.items()],
     )
     return [*suite.nodes, viewer], viewer.page.address
 

@@ -111,7 +111,7 @@ def suite(arguments: Namespace, chain: Any) -> Iterator[Replayer]:
     if parameters and arguments.live is not None:
         raise _cannot("--param is for the twin; a running suite has `ros2 param set`")
     try:
-        check_namespace(namespace)
+        namespace = check_namespace(namespace)
         rclpy.init(context=context, args=["gaik"])
         nodes = [] if arguments.live is not None else twin(arguments.robot, namespace, context, parameters)
         node = Node("gaik_replay", context=context, namespace=namespace)

@@ -6,6 +6,7 @@ Exit code 0 where every promise held, 1 where one did not, 2 for a wrong argumen
 from __future__ import annotations
 
 import argparse
+import os
 import signal
 import sys
 from collections.abc import Sequence
@@ -19,7 +20,6 @@ from gaik_ros.faults.rig import rig
 from gaik_ros.run import ROS_ARGUMENT_ERRORS, check_namespace
 
 HELD, BROKEN, WRONG = 0, 1, 2
-OWN_NAMESPACE = "faults"
 
 
 def _arguments(args: Sequence[str] | None) -> argparse.Namespace:
@@ -39,7 +39,7 @@ def _arguments(args: Sequence[str] | None) -> argparse.Namespace:
     parser.add_argument(
         "--start-suite",
         action="store_true",
-        help=f"start a suite with the twin, in the namespace {OWN_NAMESPACE} if none is given, and end it after",
+        help="start a suite with the twin, in a namespace of its own if none is given, and end it after",
     )
     parser.add_argument(
         "--cable",
@@ -67,8 +67,8 @@ def _chosen(given: argparse.Namespace) -> list[Fault]:
 
 
 def _play(given: argparse.Namespace, faults: Sequence[Fault]) -> int:
-    namespace = given.namespace or (OWN_NAMESPACE if given.start_suite else "")
-    check_namespace(namespace)
+    # By the process's number, so that two that are started at once do not hear each other.
+    namespace = check_namespace(given.namespace or (f"faults_{os.getpid()}" if given.start_suite else ""))
     outcomes: list[Outcome] = []
     skipped: dict[str, str] = {}
     if given.write is not None:

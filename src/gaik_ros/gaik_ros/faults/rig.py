@@ -19,12 +19,12 @@ from gaik_ros.faults.probe import Probe
 from gaik_ros.faults.remote import Remote, wait_until
 from gaik_ros.faults.stage import NotSeenError, Stage
 from gaik_ros.faults.suite_processes import SUITE, SuiteProcesses
+from gaik_ros.others import other_setpoints
 from gaik_ros.run import running
 
 DEVICE = "touch_sim"
 DISCOVERY = 10.0  # s for nodes that are there to be seen
 STARTING = 60.0  # s for nodes to come up
-LISTENING = 1.0  # s for setpoints of others
 
 
 class Rig:
@@ -132,16 +132,10 @@ def rig(
 
 def _refuse_other_setpoints(probe: Probe) -> None:
     """StageError: somebody else sends setpoints, so that the arm would not go where a fault has it go."""
-    before = probe.mark()
-    time.sleep(LISTENING)
-    if not probe.since(before).count("setpoint"):
-        return
-    infos = probe.get_publishers_info_by_topic("setpoint")
-    others = sorted({info.node_name for info in infos} - {probe.get_name()})
-    raise StageError(
-        f"setpoints come from {', '.join(others) or 'somewhere else'}: stop them first "
-        "(trajectory_publisher has the service ~/stop), so that the arm goes where a fault sends it"
-    )
+    mark = probe.mark()
+    reason = other_setpoints(probe, lambda: probe.since(mark).count("setpoint"))
+    if reason:
+        raise StageError(f"{reason}, so that the arm goes where a fault sends it")
 
 
 def _connected(cable: Cable, topic: str) -> Cable:
