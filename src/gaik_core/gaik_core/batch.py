@@ -30,10 +30,11 @@ _STATUS = np.array(STATUS, dtype=object)
 
 @dataclass(frozen=True)
 class BatchProblem:
-    """What the solves of a batch have in common, the targets (m, 3) and the angles to start from (m, dof)."""
+    """What the solves of a batch have in common, the targets (m, ·) and the angles to start from (m, dof)."""
 
     algebra: int
     chain: Chain
+    kind: int
     targets: Array
     first: Array
     stop: Stop
@@ -42,9 +43,12 @@ class BatchProblem:
 
     @property
     def fits_lanes(self) -> bool:
-        """Whether the lanes know the rule, and the limits are of joints alone."""
+        """Whether it is positions that are wanted, the lanes know the rule, and the limits are of joints alone."""
         return (
-            type(self.rule) is LevenbergMarquardt and len(self.chain[4]) == 0 and len(self.targets) >= LANES
+            self.kind == POSITION
+            and type(self.rule) is LevenbergMarquardt
+            and len(self.chain[4]) == 0
+            and len(self.targets) >= LANES
         )
 
 
@@ -123,6 +127,6 @@ def solve_slice(problem: BatchProblem, result: BatchResult, part: slice) -> None
     else:
         left = np.arange(len(targets))
     many.solve_each(
-        problem.algebra, problem.chain, POSITION, targets, problem.stop, problem.rule.kernel, *common,
+        problem.algebra, problem.chain, problem.kind, targets, problem.stop, problem.rule.kernel, *common,
         problem.starts, left, result.counts, result.errors,
     )  # fmt: skip

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from gaik_core.batch import BatchProblem, BatchResult, solve_in_parallel
 from gaik_core.chain import KinematicChain, algebra_code, no_chain
-from gaik_core.checks import array_of, copied_vector, count, finite, finite_vector, positive, rows
+from gaik_core.checks import array_of, copied_vector, count, finite, finite_vector, positive
 from gaik_core.errors import GaikError, ShapeError
 from gaik_core.kernels import descent as kernels
 from gaik_core.kernels import many
@@ -24,7 +24,7 @@ from gaik_core.kernels.problem import (
 )
 from gaik_core.kernels.task import POSITION
 from gaik_core.solution import STATUS, Solution, Solutions, Trace
-from gaik_core.targets import Target, pack_target
+from gaik_core.targets import Target, Targets, pack_target, pack_targets
 from gaik_core.update_rules import Adam, LevenbergMarquardt, UpdateRule
 
 Array = NDArray[np.float64]
@@ -119,7 +119,7 @@ def solve(
 
 def solve_batch(
     chain: KinematicChain,
-    targets: ArrayLike,
+    targets: Targets,
     start: ArrayLike | None = None,
     algebra: str = "quaternion",
     rule: UpdateRule = _ADAM,
@@ -130,14 +130,16 @@ def solve_batch(
     restarts: int = 0,
     seed: int = 0,
     workers: int | None = None,
+    orientation_tolerance: float = 1e-2,
+    orientation_weight: float | None = None,
 ) -> Solutions:
-    """Solve m positions, each for itself, on all processors: by LevenbergMarquardt, sixteen in lock step on each.
+    """Solve m targets, each for itself, on all processors: positions by LevenbergMarquardt sixteen in lock step.
 
     Args:
         chain: the arm.
-        targets: (m, 3) positions in m.
+        targets: (m, 3) positions in m, an array of motors, or a sequence of Poses, Motors or Pointings.
         start: (dof,) for all of them, or (m, dof) for each; the chain's home by default.
-        algebra: as for `solve`, like the rest but for the last.
+        algebra: as for `solve`, like the rest but for `workers`.
         rule: how an update follows from the error and the Jacobian.
         tolerance: distance below which a solve converges (m).
         max_iterations: how many updates each may make.
@@ -145,6 +147,8 @@ def solve_batch(
         restarts: how many other starts each may try.
         seed: of those starts.
         workers: how many processors to use; all that the process may use by default.
+        orientation_tolerance: of Poses, Motors and Pointings (rad).
+        orientation_weight: how many metres one radian counts for.
 
     Returns:
         A Solution of arrays: the numbers that `solve` gives for each target, to rounding.
@@ -154,18 +158,19 @@ def solve_batch(
     """
     if not isinstance(chain, KinematicChain):
         raise no_chain(chain)
-    points = rows("targets", targets, 3)
+    kind, wanted = pack_targets(targets)
     first = array_of("start", chain.home if start is None else start)
-    if first.shape not in ((chain.dof,), (len(points), chain.dof)):
-        raise ShapeError("start", first.shape, f"({chain.dof},) or ({len(points)}, {chain.dof})")
+    if first.shape not in ((chain.dof,), (len(wanted), chain.dof)):
+        raise ShapeError("start", first.shape, f"({chain.dof},) or ({len(wanted)}, {chain.dof})")
     finite("start", first)
-    result = BatchResult.of(len(points), chain.dof)
+    result = BatchResult.of(len(wanted), chain.dof)
     problem = BatchProblem(
         algebra_code(algebra),
         _packed(chain, limits),
-        points,
-        np.broadcast_to(first, (len(points), chain.dof)),
-        _stop(chain, POSITION, rule, tolerance, 1.0, None, max_iterations),
+        kind,
+        wanted,
+        np.broadcast_to(first, (len(wanted), chain.dof)),
+        _stop(chain, kind, rule, tolerance, orientation_tolerance, orientation_weight, max_iterations),
         rule,
         random_starts(chain, count("restarts", restarts), count("seed", seed)),
     )
@@ -175,7 +180,7 @@ def solve_batch(
 
 def solve_path(
     chain: KinematicChain,
-    targets: ArrayLike,
+    targets: Targets,
     start: ArrayLike | None = None,
     algebra: str = "quaternion",
     rule: UpdateRule = _ADAM,
@@ -184,14 +189,16 @@ def solve_path(
     *,
     limits: bool | None = None,
     largest_step: float = math.pi / 4,
+    orientation_tolerance: float = 1e-2,
+    orientation_weight: float | None = None,
 ) -> Solutions:
-    """Solve positions in order, each from the angles of the one before (section 4.3), without a change of branch.
+    """Solve targets in order, each from the angles of the one before (section 4.3), without a change of branch.
 
     Args:
         chain: the arm.
-        targets: (m, 3) positions in m, one after the other.
+        targets: (m, 3) positions in m, an array of motors, or a sequence of Poses, Motors or Pointings, in order.
         start: (dof,) angles before the first; the chain's home by default.
-        algebra: as for `solve`, like the rest but for the last.
+        algebra: as for `solve`, like the rest but for `largest_step`.
         rule: how an update follows from the error and the Jacobian.
         tolerance: distance below which a target is reached (m).
         max_iterations: how many updates each solve may take: of a target or, on the way to it, of a piece.
@@ -199,6 +206,8 @@ def solve_path(
         largest_step: no joint moves further than this (rad or m) in one solve. A target at which one would is walked
             to in 2, 4, … 128 pieces of the straight way from the target before; where even of the smallest one jumps,
             the arm stays where it was, stagnated. So targets that lie close together are as close in the joints.
+        orientation_tolerance: of Poses, Motors and Pointings (rad).
+        orientation_weight: how many metres one radian counts for.
 
     Returns:
         A Solution of arrays.
@@ -208,14 +217,14 @@ def solve_path(
     """
     if not isinstance(chain, KinematicChain):
         raise no_chain(chain)
-    points = rows("targets", targets, 3)
+    kind, wanted = pack_targets(targets)
     first = finite_vector("start", chain.home if start is None else start, chain.dof)
-    result = BatchResult.of(len(points), chain.dof)
-    stop = _stop(chain, POSITION, rule, tolerance, 1.0, None, max_iterations)
+    result = BatchResult.of(len(wanted), chain.dof)
+    stop = _stop(chain, kind, rule, tolerance, orientation_tolerance, orientation_weight, max_iterations)
     bound = positive("largest_step", largest_step)
-    if len(points):
+    if len(wanted):
         many.solve_along(
-            algebra_code(algebra), _packed(chain, limits), POSITION, points, stop, rule.kernel, rule.settings,
+            algebra_code(algebra), _packed(chain, limits), kind, wanted, stop, rule.kernel, rule.settings,
             first, bound, result.angles, result.counts, result.errors,
         )  # fmt: skip
     return result.solutions()

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from gaik_core.checks import copied_vector, finite_vector, unit_vector
+from gaik_core.checks import copied_vector, finite, finite_vector, rows, unit_vector
+from gaik_core.errors import GaikError
 from gaik_core.kernels.task import POINTING, POSE, POSITION
 from gaik_core.versors import Motor, Orientation, unit_quaternion
 
@@ -64,6 +67,8 @@ class Pose:
 
 _FRAMES = (Pointing, Pose, Motor)
 Target = ArrayLike | Pointing | Pose | Motor
+Targets = ArrayLike | Sequence[Pointing] | Sequence[Pose] | Sequence[Motor] | Motor
+"""Positions (m, 3), an array of motors, or a sequence of targets of one kind."""
 
 
 def pack_target(target: Target) -> tuple[int, Array]:
@@ -75,3 +80,33 @@ def pack_target(target: Target) -> tuple[int, Array]:
     if isinstance(target, Motor):
         target = Pose(target.translation, target.rotation)
     return POSE, target.packed()
+
+
+_KINDS = {POSITION: "positions", POINTING: "Pointings", POSE: "Poses or Motors"}
+
+
+def pack_targets(targets: Targets) -> tuple[int, Array]:
+    """The kernels' number of the kind that all targets are of, and their numbers (m, ·).
+
+    Raises GaikError where they are not of one kind, and what is wrong with which.
+    """
+    many: Any = targets
+    motors = isinstance(many, Motor) and many.shape != ()
+    if isinstance(many, _FRAMES) and not motors:
+        raise GaikError(f"targets is one {type(many).__name__}; expected a sequence of them")
+    frames = isinstance(many, list | tuple) and any(isinstance(target, _FRAMES) for target in many)
+    if not (motors or frames):
+        return POSITION, rows("targets", many, 3)
+    packed = [_pack_one_of_many(number, target) for number, target in enumerate(many)]
+    kinds = sorted({kind for kind, _ in packed}) or [POSE]
+    if len(kinds) > 1:
+        raise GaikError(f"targets are {' and '.join(_KINDS[kind] for kind in kinds)}; expected one kind")
+    return kinds[0], np.array([numbers for _, numbers in packed]).reshape(len(packed), -1)
+
+
+def _pack_one_of_many(number: int, target: Target) -> tuple[int, Array]:
+    try:
+        kind, numbers = pack_target(target)
+        return kind, finite("target", numbers)
+    except GaikError as reason:
+        raise GaikError(f"targets[{number}]: {reason}") from None

@@ -8,8 +8,10 @@ from numpy.typing import NDArray
 from gaik_core.kernels.compiled import compiled, inlined, uncounted
 from gaik_core.kernels.descent import (
     IMPROVEMENT,
+    LARGEST,
     STAGNATED,
     UNREACHABLE,
+    Outcome,
     Stop,
     copy,
     room,
@@ -17,6 +19,7 @@ from gaik_core.kernels.descent import (
     solve_with_restarts,
 )
 from gaik_core.kernels.kinematics import Chain
+from gaik_core.kernels.task import between
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -89,26 +92,63 @@ def walk(
     Returns whether any step was a jump, and the outcome of the last point with the updates of all. `work` is what
     `room_to_walk` asks for.
     """
-    joints = angles.shape[0]
-    point, before, free = work[:3], work[3 : 3 + joints], work[3 + joints :]
+    size, joints = end.shape[0], angles.shape[0]
+    point, before, free = work[:size], work[size : size + joints], work[size + joints :]
     no_trace, jumped, total = work[:0].reshape((0, 2)), False, 0
     status, distance, turn = STAGNATED, np.inf, np.inf
     for k in range(1, pieces + 1):
-        for axis in range(3):
-            point[axis] = end[axis] if k == pieces else begin[axis] + k / pieces * (end[axis] - begin[axis])
+        between(kind, begin, end, k / pieces, point)
         copy(angles, before)
         status, iterations, distance, turn = solve_once(
-            algebra, chain, kind, point, stop, rule, settings, angles, IMPROVEMENT, no_trace, no_trace, free
-        )
+            algebra, chain, kind, end if k == pieces else point, stop, rule, settings, angles, IMPROVEMENT,
+            no_trace, no_trace, free,
+        )  # fmt: skip
         total += iterations
         jumped = jumped or largest_step(angles, before) > bound
     return jumped, status, total, distance, turn
 
 
+@uncounted
+def walk_without_jumps(
+    algebra: int,
+    chain: Chain,
+    kind: int,
+    begin: Array,
+    end: Array,
+    stop: Stop,
+    rule: int,
+    settings: Array,
+    bound: float,
+    current: Array,
+    angles: Array,
+    work: Array,
+) -> Outcome:
+    """`walk` from `current` in more and more pieces until no step is a jump.
+
+    Where even of the smallest one is, the arm stays where it was, STAGNATED or UNREACHABLE.
+    """
+    total = 0
+    status, distance, turn = STAGNATED, np.inf, np.inf
+    for halvings in range(1, HALVINGS + 1):
+        copy(current, angles)
+        jumped, status, iterations, distance, turn = walk(
+            algebra, chain, kind, begin, end, 2**halvings, stop, rule, settings, bound, angles, work
+        )
+        total += iterations
+        if not jumped:
+            return status, total, distance, turn
+    copy(current, angles)
+    stay = (stop[0], stop[1], stop[2], stop[3], 0)
+    _, _, _, distance, turn = walk(
+        algebra, chain, kind, begin, end, 1, stay, rule, settings, bound, angles, work
+    )
+    return status if status == UNREACHABLE else STAGNATED, total, distance, turn
+
+
 @inlined
 def room_to_walk(n: int, joints: int) -> int:
     """How many numbers of workspace `walk` takes."""
-    return 3 + joints + room(n, joints)
+    return LARGEST + joints + room(n, joints)
 
 
 @compiled
@@ -126,32 +166,25 @@ def solve_along(
     counts: Integers,
     errors: Array,
 ) -> None:
-    """Solve `targets` (m, 3) in order, each from the angles of the one before; write them into `angles` (m, d).
+    """Solve `targets` (m, ·) in order, each from the angles of the one before; write them into `angles` (m, d).
 
     A step of more than `bound` in any joint is a jump to another branch. It is walked again in smaller and smaller
-    pieces of the straight way; where even the smallest jump, the arm stays where it was, STAGNATED or UNREACHABLE.
+    pieces of the straight way.
     """
-    current, work = start.copy(), np.empty(room_to_walk(chain[0].shape[0], start.shape[0]))
-    stay = (stop[0], stop[1], stop[2], stop[3], 0)
+    no_trace, current = np.empty((0, 2)), start.copy()
+    work = np.empty(room_to_walk(chain[0].shape[0], start.shape[0]))
     for i in range(targets.shape[0]):
-        begin, largest = (targets[i - 1], bound) if i > 0 else (targets[i], np.inf)
-        halvings, total = 0, 0
-        while True:
-            copy(current, angles[i])
-            jumped, status, iterations, distance, turn = walk(
-                algebra, chain, kind, begin, targets[i], 2**halvings, stop, rule, settings, largest, angles[i],
-                work,
+        copy(current, angles[i])
+        status, iterations, distance, turn = solve_once(
+            algebra, chain, kind, targets[i], stop, rule, settings, angles[i], IMPROVEMENT, no_trace, no_trace,
+            work,
+        )  # fmt: skip
+        if i > 0 and largest_step(angles[i], current) > bound:
+            status, more, distance, turn = walk_without_jumps(
+                algebra, chain, kind, targets[i - 1], targets[i], stop, rule, settings, bound, current,
+                angles[i], work,
             )  # fmt: skip
-            total += iterations
-            if not jumped or halvings == HALVINGS:
-                break
-            halvings += 1
-        if jumped:
-            copy(current, angles[i])
-            _, _, _, distance, turn = walk(
-                algebra, chain, kind, begin, targets[i], 1, stay, rule, settings, largest, angles[i], work
-            )
-            status = status if status == UNREACHABLE else STAGNATED
-        counts[i, STATUS], counts[i, ITERATIONS], counts[i, RESTARTS] = status, total, 0
+            iterations += more
+        counts[i, STATUS], counts[i, ITERATIONS], counts[i, RESTARTS] = status, iterations, 0
         errors[i, DISTANCE], errors[i, TURN] = distance, turn
         copy(angles[i], current)

@@ -31,6 +31,33 @@ def task_rows(kind: int) -> int:
 
 
 @inlined
+def between(kind: int, begin: Array, end: Array, share: float, target: Array) -> None:
+    """Write the target at a share of the way from one to another: straight, and turned the shorter way round."""
+    nearer = 1.0
+    if kind == POSE:
+        cosine = begin[3] * end[3] + begin[4] * end[4] + begin[5] * end[5] + begin[6] * end[6]
+        nearer = -1.0 if cosine < 0.0 else 1.0
+    for k in range(end.shape[0]):
+        start = begin[k] if k < 3 else nearer * begin[k]
+        target[k] = start + share * (end[k] - start)
+    if kind == POSE:
+        make_unit(end, target, 3, 7)
+    if kind == POINTING:
+        make_unit(end, target, 3, 6)
+        make_unit(end, target, 6, 9)
+
+
+@inlined
+def make_unit(end: Array, target: Array, first: int, last: int) -> None:
+    """Scale a part of a target to length 1; between opposites, where there is none, take that of the end."""
+    square = 0.0
+    for k in range(first, last):
+        square += target[k] * target[k]
+    for k in range(first, last):
+        target[k] = end[k] if square < 1e-12 else target[k] / math.sqrt(square)
+
+
+@inlined
 def turn_onto(tool: q.Vector, wanted: q.Vector) -> q.Vector:
     """The rotation vector that brings one unit vector onto another; from its opposite, about any axis across it."""
     axis = q.cross(tool, wanted)
