@@ -18,6 +18,7 @@ from gaik_ros.conversions import JointMessageError, fill, joint_state, joint_val
 from gaik_ros.deadline_loop import DeadlineLoop
 from gaik_ros.health import ERROR, LOOP_PARAMETERS, OK, WARN, Health, HealthReporter
 from gaik_ros.joint_control import ON_REFERENCE_TIMEOUT, ControlSettings, JointControl, Mode
+from gaik_ros.last_word import say_last
 from gaik_ros.parameters import Parameter, ParameterSet, ParameterTable, check_joint_names
 from gaik_ros.pid import Gains
 from gaik_ros.run import run
@@ -229,11 +230,14 @@ class PidController(Node):
                 now - reference.since,
                 late,
             )
+        self._publish(effort)
+        if self._control.mode is not self._mode:
+            self._tell(self._control.mode)
+
+    def _publish(self, effort: Array) -> None:
         fill(self._command, "effort", effort)
         stamp_now(self._command.header.stamp, self.get_clock())
         self._publisher.publish(self._command)
-        if self._control.mode is not self._mode:
-            self._tell(self._control.mode)
 
     def _tell(self, mode: Mode) -> None:
         """Log a change of mode that a user should know of."""
@@ -281,9 +285,7 @@ class PidController(Node):
 
     def destroy_node(self) -> None:
         """Let go of the device, then end."""
-        if self.context.ok():
-            fill(self._command, "effort", np.zeros(len(self._names)))
-            self._publisher.publish(self._command)
+        say_last(self._publisher, lambda: self._publish(np.zeros(len(self._names))), self.context)
         super().destroy_node()
 
 

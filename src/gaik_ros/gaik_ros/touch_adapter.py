@@ -26,6 +26,7 @@ from gaik_ros.conversions import JointMessageError, array_to_point, fill, joint_
 from gaik_ros.driver_conventions import JointConvention, signed_axes, tip_force
 from gaik_ros.drivers import DEFAULT, DRIVERS, JOINT_STATE
 from gaik_ros.health import ERROR, OK, WARN, Health, HealthReporter
+from gaik_ros.last_word import say_last
 from gaik_ros.message_types import message_class
 from gaik_ros.parameters import Parameter, ParameterSet, ParameterTable, check_joint_names
 from gaik_ros.run import run
@@ -256,8 +257,7 @@ class TouchAdapter(Node):
 
     def destroy_node(self) -> None:
         """Let go of the device, then end."""
-        if self.context.ok():
-            self._release()
+        say_last(self._commands, self._release, self.context)
         super().destroy_node()
 
 
