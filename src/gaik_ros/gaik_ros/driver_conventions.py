@@ -85,6 +85,12 @@ def signed_axes(text: str) -> Array:
     return rows
 
 
+def has_tip_force(chain: KinematicChain) -> bool:
+    """Whether joint efforts make a force on the tip: where three joints move it in space."""
+    anywhere = chain.home + np.linspace(0.3, 0.7, chain.dof)  # home itself may be singular
+    return chain.dof == 3 and bool(np.linalg.matrix_rank(chain.jacobian(anywhere)) == 3)
+
+
 @dataclass(frozen=True)
 class TipForce:
     """A force (3,) N on the tip, in our frame, and the share of what was asked for: below 1 where it was cut."""

@@ -23,7 +23,7 @@ from sensor_msgs.msg import JointState
 from gaik_core import KinematicChain
 from gaik_ros import qos
 from gaik_ros.conversions import JointMessageError, array_to_point, fill, joint_state, joint_values, stamp_now
-from gaik_ros.driver_conventions import JointConvention, signed_axes, tip_force
+from gaik_ros.driver_conventions import JointConvention, has_tip_force, signed_axes, tip_force
 from gaik_ros.drivers import DEFAULT, DRIVERS, JOINT_STATE
 from gaik_ros.health import ERROR, OK, WARN, Health, HealthReporter
 from gaik_ros.last_word import say_last
@@ -116,9 +116,11 @@ ROWS = (
 )
 
 
-def table_for(driver: str) -> ParameterTable:
-    """The parameters with the defaults of a driver."""
+def table_for(driver: str, has_force: bool = True) -> ParameterTable:
+    """The parameters with the defaults of a driver; without `has_force` there is none to be limited."""
     defaults = {"driver": driver, **vars(DRIVERS[driver])}
+    if not has_force:
+        defaults["max_force"] = None
     return ParameterTable(
         "touch_adapter", tuple(replace(row, default=defaults.get(row.name, row.default)) for row in ROWS)
     )
@@ -133,9 +135,11 @@ class TouchAdapter(Node):
     def __init__(self, **node_kwargs: Any) -> None:
         super().__init__(TABLE.node, **node_kwargs)
         driver = TABLE.declare_first(self, "driver")
-        self.values = table_for(driver).declare(self)
+        self._chain = KinematicChain.load(TABLE.declare_first(self, "robot"))
+        self._has_force = has_tip_force(self._chain)
+        self.values = table_for(driver, self._has_force).declare(self, self._refuse_limit)
         values = self.values
-        self._chain = KinematicChain.load(values.robot)
+        self._refuse_limit(values)
         self._refuse_own_topics()
         self._convention = convention_of(values, self._chain)
         self._axes = signed_axes(values.force_axes)
@@ -152,6 +156,14 @@ class TouchAdapter(Node):
         self.health = HealthReporter(
             self, values, checks={"driver": self._driver_health, "topics": self._watch.health}
         )
+
+    def _refuse_limit(self, values: ParameterSet) -> None:
+        """ValueError: a force is to be limited that cannot be known."""
+        if values.max_force is not None and not self._has_force:
+            raise ValueError(
+                f"parameter 'max_force' is {values.max_force}: it may be set only where three joints move the tip in "
+                f"space, which those of {self._chain.name} do not"
+            )
 
     def _refuse_own_topics(self) -> None:
         """ValueError: the driver's topics are the suite's, so that this node would hear itself."""
@@ -211,13 +223,15 @@ class TouchAdapter(Node):
         self._pushing = True
 
     def _to_driver(self, angles: Array, efforts: Array) -> Array:
-        """What the driver is told: its efforts, or its force."""
-        if isinstance(self._command, JointState):
+        """What the driver is told: its efforts, or its force; cut by the same share."""
+        if not self._has_force:
             return self._convention.efforts_to_driver(efforts)
         force = tip_force(
             self._chain.jacobian(angles), efforts, self.values.max_force, self.values.singular_value
         )
         self._share = force.share
+        if isinstance(self._command, JointState):
+            return self._convention.efforts_to_driver(force.share * efforts)
         return self._axes @ force.vector
 
     def _look(self) -> None:
@@ -283,9 +297,10 @@ def command_of(values: ParameterSet, chain: KinematicChain) -> tuple[Any, Callab
         raise ValueError(
             f"parameter 'command_type' is {values.command_type!r}: it may be {JOINT_STATE} or a message with a force"
         )
-    if chain.dof != 3:
+    if not has_tip_force(chain):
         raise ValueError(
-            f"{chain.name} has {chain.dof} joints; efforts make a force only where there are three"
+            f"parameter 'command_type' is {values.command_type!r}: it may be {JOINT_STATE}, since efforts make a force "
+            f"only where three joints move the tip in space, which those of {chain.name} do not"
         )
     if hasattr(message, "header"):
         message.header.frame_id = values.frame_id

@@ -176,7 +176,7 @@ def test_the_force_ends_with_the_adapter(context):
 
 def test_efforts_are_passed_to_a_driver_that_takes_them(context, start):
     wires = Wires(context, JointState, commands="driver/joint_command")
-    start(wires, adapter(context, "own", relative=True, joint_signs=[-1, 1, 1]))
+    start(wires, adapter(context, "own", relative=True, joint_signs=[-1, 1, 1], max_force=50.0))
     wait_until(wires.connected)
 
     def sent():
@@ -189,6 +189,43 @@ def test_efforts_are_passed_to_a_driver_that_takes_them(context, start):
     np.testing.assert_allclose(wires.commands[-1].effort, [-0.1, 0.5, 0.3], atol=1e-12)
     np.testing.assert_allclose(wires.states[-1].position, [0.0, 0.5, 0.6], atol=1e-12)
     np.testing.assert_allclose(wires.states[-1].velocity, [-1.0, 2.0, 5.0], atol=1e-12)
+
+
+@pytest.mark.parametrize("max_force", [0.0, 0.5])
+def test_the_limit_holds_for_a_driver_that_takes_efforts_too(context, start, max_force):
+    wires = Wires(context, JointState, commands="driver/joint_command")
+    start(wires, adapter(context, "own", max_force=max_force))
+    wait_until(wires.connected)
+    angles, efforts = np.array([0.2, 0.7, 0.9]), np.array([0.9, 0.9, 0.9])
+
+    def sent():
+        wires.send(angles, efforts)
+        time.sleep(0.02)
+        return len(wires.commands) > 5
+
+    wait_until(sent)
+    wires.commands.clear()
+    wait_until(sent)
+    for message in wires.commands:
+        force = np.linalg.solve(CHAIN.jacobian(angles).T, message.effort)
+        assert np.linalg.norm(force) <= max_force + 1e-9
+    if max_force:
+        wait_until(lambda: sent() and any(wires.commands[-1].effort))
+        np.testing.assert_allclose(np.cross(wires.commands[-1].effort, efforts), 0.0, atol=1e-9)
+
+
+def test_a_limit_where_no_force_can_be_known_is_refused(context, start):
+    arm = KinematicChain.load("arm5")
+    own = {"robot": "arm5", "joint_names": list(arm.joint_names), "joint_signs": [1.0] * 5}
+    with pytest.raises(ValueError, match=r"^parameter 'max_force' is 0.0: .* arm5 do not$"):
+        adapter(context, "own", **own, max_force=0.0)
+    with pytest.raises(ValueError, match=r"^parameter 'command_type' is .* arm5 do not$"):
+        adapter(context, "openhaptics", **own)
+    bench = Bench(context)
+    start(bench, adapter(context, "own", **own))
+    answer = bench.change("touch_adapter", max_force=1.0)
+    assert not answer.successful
+    assert "'max_force' is 1.0" in answer.reason
 
 
 def test_bad_messages_are_refused_and_nothing_is_pushed(context, start):
