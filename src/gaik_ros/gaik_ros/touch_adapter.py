@@ -190,9 +190,6 @@ class TouchAdapter(Node):
     def _on_state(self, message: JointState) -> None:
         try:
             angles = self._convention.from_driver(joint_values(message, self.values.joint_names))
-            if self.values.use_velocity and message.velocity:
-                rates = joint_values(message, self.values.joint_names, "velocity")
-                fill(self._state, "velocity", self._convention.rates_from_driver(rates))
         except JointMessageError as reason:
             self._watch.refuse(self.values.state_topic, reason)
             return
@@ -203,10 +200,22 @@ class TouchAdapter(Node):
         else:
             stamp_now(self._state.header.stamp, self.get_clock())
         fill(self._state, "position", angles)
+        fill(self._state, "velocity", self._rates(message))
         self._states.publish(self._state)
         self._tip.header.stamp = self._state.header.stamp
         self._tip.point = array_to_point(self._chain.forward(angles))
         self._tips.publish(self._tip)
+
+    def _rates(self, message: JointState) -> Array:
+        """Our rates (dof,) rad/s, or none (0,) where the driver has none, or bad ones, which cost only themselves."""
+        if not (self.values.use_velocity and message.velocity):
+            return np.empty(0)
+        try:
+            rates = joint_values(message, self.values.joint_names, "velocity")
+        except JointMessageError as reason:
+            self._watch.refuse(f"velocity on {self.values.state_topic}", reason)
+            return np.empty(0)
+        return self._convention.rates_from_driver(rates)
 
     def _on_command(self, message: JointState) -> None:
         try:

@@ -246,6 +246,42 @@ def test_bad_messages_are_refused_and_nothing_is_pushed(context, start):
     assert all(not c.force.x and not c.force.y and not c.force.z for c in wires.commands)
 
 
+def test_a_velocity_is_passed_on_with_its_own_state_only(context, start):
+    wires = Wires(context)
+    start(wires, adapter(context, "openhaptics"))
+    wait_until(wires.connected)
+
+    def told(velocity, expected):
+        wires.send([0.1, 0.7, 0.8], [0.0] * 3, velocity=velocity)
+        return wires.states and list(wires.states[-1].velocity) == expected
+
+    wait_until(lambda: told([1.0, 2.0, 3.0], [1.0, 2.0, 3.0]), "no velocity is passed on")
+    wait_until(lambda: told(None, []), "a velocity of before is passed on with a state that has none")
+
+
+@pytest.mark.parametrize("velocity", [[float("nan"), 0.0, 0.0], [1.0, 2.0]], ids=["nan", "too few"])
+def test_a_bad_velocity_costs_the_velocity_and_not_the_position(context, start, velocity):
+    wires, bench = Wires(context), Bench(context)
+    start(wires, bench, adapter(context, "openhaptics"))
+    wait_until(lambda: wires.connected(others=1))
+
+    def told(heard=5):
+        wires.send([0.1, 0.7, 0.8], [0.02, -0.05, 0.03], velocity=velocity)
+        return len(wires.states) > heard and wires.commands and wires.force().any()
+
+    wait_until(told, "the states, or the force, are lost")
+    for state in wires.states:
+        np.testing.assert_allclose(state.position, [0.1, 0.7, 0.8], atol=1e-12)
+        assert not state.velocity
+
+    def counted():
+        told()
+        status = bench.reported("touch_adapter: topics")
+        return status and any(v.key == "refused_velocity on driver/joint_states" for v in status.values)
+
+    wait_until(counted, "the refusal is not told")
+
+
 def test_the_names_that_a_driver_uses_are_parameters(context, start):
     wires = Wires(context, states="geomagic_touch_x/joint_states", commands="geomagic_touch_x/command/wrench")
     start(wires, adapter(context, "geomagic_touch_x_ros2", joint_offsets=[0.1, 0.0, -0.2]))
