@@ -73,7 +73,7 @@ class Record(Node):
         self.values = TABLE.declare(self)
         self._kept: deque[tuple[str, str, int, bytes]] = deque()
         self._seen: set[str] = set()
-        self._unknown: set[str] = set()
+        self._refused: set[str] = set()
         self._closed = False
         self._wanted = {self._resolved(name) for name in self.values.topics if name not in ("", ALL)}
         self._writer = BagWriter(Path(self.values.bag or f"run_{datetime.now():%Y-%m-%d_%H-%M-%S}"))
@@ -136,6 +136,8 @@ class Record(Node):
 
     def _look(self) -> None:
         """Subscribe to wanted topics that have appeared, with what their publishers offer."""
+        if not self.context.ok():  # `_write` may have ended it in the same round
+            return
         for topic, (type_name, *_) in self.get_topic_names_and_types():
             if topic in self._seen or not (self._all or topic in self._wanted):
                 continue
@@ -148,6 +150,7 @@ class Record(Node):
                 self._subscribe(topic, type_name, *_common(offers))
             except ValueError as reason:
                 self._seen.add(topic)
+                self._refused.add(topic)
                 self.get_logger().warning(f"{topic} is not recorded: {reason}")
 
     def _close(self) -> None:
@@ -161,6 +164,8 @@ class Record(Node):
             self.get_logger().error(f"{self._writer.file} is not complete: {reason}")
             return
         counts = self._writer.counts
+        if unheard := sorted(self._wanted - self._refused - counts.keys()):
+            self.get_logger().warning(f"nothing was heard on {', '.join(unheard)}")
         total = f"{sum(counts.values())} messages of {len(counts)} topics"
         self.get_logger().info(f"{total} in {self._writer.file}")
 

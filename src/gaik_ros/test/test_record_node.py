@@ -121,6 +121,34 @@ def test_it_ends_by_itself_after_the_duration(talking, tmp_path):
     assert np.ptp(times) < 4.0
 
 
+def test_an_end_while_a_look_is_due_is_quiet(context, tmp_path):
+    record = Record(
+        context=context,
+        parameter_overrides=overrides(bag=str(tmp_path / "run"), topics=["all"], duration=0.1),
+    )
+    time.sleep(1.5)  # the write that ends it and the first look are both due in the first round
+    with running([record], context):
+        wait_until(lambda: not context.ok())
+    assert (tmp_path / "run" / "metadata.yaml").is_file()
+
+
+def test_a_wanted_topic_that_nobody_spoke_on_is_named_at_the_end(talking, tmp_path):
+    talk = talking.create_publisher(String, "talk", 10)
+    process = start(tmp_path, "-p", "topics:=[talk, camera/inof, all]")
+    try:
+        wait_until(lambda: talk.get_subscription_count() == 1)
+        for _ in range(10):
+            talk.publish(String(data="hello"))
+            time.sleep(0.02)
+        process.send_signal(signal.SIGINT)
+        _, said = process.communicate(timeout=60)
+    finally:
+        process.kill()
+    assert process.returncode == 0
+    (line,) = (line for line in said.splitlines() if "nothing was heard" in line)
+    assert "WARN" in line and line.endswith("nothing was heard on /camera/inof")
+
+
 def test_a_bag_that_is_there_is_refused_in_one_line(tmp_path):
     (tmp_path / "run").mkdir()
     process = start(tmp_path)
