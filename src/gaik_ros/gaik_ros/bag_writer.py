@@ -35,7 +35,10 @@ def typestore() -> Typestore:
 
 
 class BagWriter:
-    """A bag in a new folder `run`: the file run/run.mcap and its metadata. A context manager."""
+    """A bag in a new folder `run`: the file run/run.mcap and its metadata.
+
+    A context manager: a block that ends with an exception leaves a bag that was to be replaced as it was.
+    """
 
     def __init__(self, folder: Path, replace: bool = False) -> None:
         """Begin the bag; with `replace`, one of that name that is there stays until this one is complete.
@@ -95,10 +98,19 @@ class BagWriter:
             self._place.rename(self._folder)
             self._place.parent.rmdir()
 
+    def _give_up(self) -> None:
+        """Keep the bag of before; one that replaces none is kept as far as it was written."""
+        self._writer.close()
+        if self._place != self._folder:
+            shutil.rmtree(self._place.parent)
+
     def __enter__(self) -> BagWriter:
         return self
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        self.close()
+        if kind is None:
+            self.close()
+        else:
+            self._give_up()

@@ -244,6 +244,21 @@ def test_bags_are_not_overwritten_unless_told_and_then_at_the_end_only(tmp_path)
         BagWriter(other, replace=True)
 
 
+def test_a_bag_stays_where_its_successor_is_interrupted(tmp_path):
+    folder = device_bag(tmp_path / "run", seconds=0.1)
+    before = {path.name: path.read_bytes() for path in folder.iterdir()}
+    with pytest.raises(KeyboardInterrupt), BagWriter(folder, replace=True) as writer:
+        put(writer, "/setpoint", START, point([0.0, 0.0, 0.0]))
+        raise KeyboardInterrupt
+    assert {path.name: path.read_bytes() for path in folder.iterdir()} == before
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["run"]
+    with pytest.raises(KeyboardInterrupt), BagWriter(tmp_path / "new") as writer:
+        put(writer, "/setpoint", START, point([0.0, 0.0, 0.0]))
+        put(writer, "/joint_states", START, joints(START, [0.1, 0.7, 0.8]))
+        raise KeyboardInterrupt
+    assert len(read_bag(tmp_path / "new").messages("setpoint")) == 1
+
+
 def test_a_type_that_is_not_known_is_named(tmp_path):
     with BagWriter(tmp_path / "run") as writer:
         assert not writer.knows("omni_msgs/msg/OmniFeedback")
