@@ -14,6 +14,8 @@ from builtin_interfaces.msg import Time
 from geometry_msgs.msg import Point
 from numpy.typing import ArrayLike, NDArray
 from rclpy.clock import Clock
+from rclpy.impl.implementation_singleton import rclpy_implementation
+from rclpy.serialization import deserialize_message
 from sensor_msgs.msg import JointState
 
 from gaik_ros.joint_message import JointMessageError, joint_values
@@ -27,6 +29,7 @@ __all__ = [
     "joint_state",
     "joint_values",
     "point_to_array",
+    "raw_joint_values",
     "stamp_now",
 ]
 
@@ -62,6 +65,15 @@ def joint_state(
 def fill(message: JointState, field: str, values: ArrayLike) -> None:
     """Put `values` into `field` of a message that is used again and again; cheaper than a new message."""
     setattr(message, field, array("d", np.asarray(values, dtype=np.float64).tolist()))
+
+
+def raw_joint_values(raw: bytes, names: Sequence[str], field: str = "position") -> Array:
+    """As `joint_values`, of a message as it is on the wire. Raises JointMessageError where the bytes are none, too."""
+    try:
+        message = deserialize_message(raw, JointState)
+    except rclpy_implementation.RMWError as reason:
+        raise JointMessageError(f"its {len(raw)} bytes are no JointState") from reason
+    return joint_values(message, names, field)
 
 
 def stamp_now(stamp: Time, clock: Clock) -> None:

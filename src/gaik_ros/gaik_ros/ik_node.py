@@ -13,16 +13,21 @@ import numpy as np
 from diagnostic_msgs.msg import DiagnosticStatus
 from geometry_msgs.msg import Point
 from numpy.typing import NDArray
-from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.node import Node
-from rclpy.serialization import deserialize_message
 from sensor_msgs.msg import JointState
 from std_srvs.srv import Trigger
 
 from gaik_core import ALGEBRAS, RULES, KinematicChain, rule_by_name
 from gaik_ros import qos
 from gaik_ros.continuous_ik import ContinuousIk, Result
-from gaik_ros.conversions import JointMessageError, fill, joint_state, joint_values, point_to_array, stamp_now
+from gaik_ros.conversions import (
+    JointMessageError,
+    fill,
+    joint_state,
+    point_to_array,
+    raw_joint_values,
+    stamp_now,
+)
 from gaik_ros.deadline_loop import DeadlineLoop
 from gaik_ros.health import LOOP_PARAMETERS, OK, WARN, Health, HealthReporter, worst
 from gaik_ros.parameters import Parameter, ParameterSet, ParameterTable
@@ -33,7 +38,6 @@ from gaik_ros.verdict import Verdict, describe, verdict_message
 from gaik_ros.watch import Watch
 
 Array = NDArray[np.float64]
-RMWError = rclpy_implementation.RMWError  # the bytes are no message
 
 TABLE = ParameterTable(
     "ik_node",
@@ -203,8 +207,8 @@ class IkNode(Node):
         if self._raw_state is None or time.monotonic() - self._raw_state[1] > self.values.state_timeout:
             return None
         try:
-            return joint_values(deserialize_message(self._raw_state[0], JointState), self._names)
-        except (JointMessageError, RMWError) as reason:
+            return raw_joint_values(self._raw_state[0], self._names)
+        except JointMessageError as reason:
             self._watch.refuse("joint_states", reason)
             return None
 

@@ -12,14 +12,13 @@ from geometry_msgs.msg import Point
 from numpy.typing import NDArray
 from rclpy.node import Node
 from rclpy.qos import QoSProfile
-from rclpy.serialization import deserialize_message
 from sensor_msgs.msg import JointState
 from std_msgs.msg import ColorRGBA
 from visualization_msgs.msg import Marker, MarkerArray
 
 from gaik_core import KinematicChain
 from gaik_ros import qos
-from gaik_ros.conversions import JointMessageError, array_to_point, joint_values, point_to_array
+from gaik_ros.conversions import JointMessageError, array_to_point, point_to_array, raw_joint_values
 from gaik_ros.parameters import Parameter, ParameterTable
 from gaik_ros.run import run
 from gaik_ros.watch import Watch
@@ -97,7 +96,7 @@ class PathMarkers(Node):
         raw, self._newest_state = self._newest_state, None
         if raw is not None:
             try:
-                angles = joint_values(deserialize_message(raw, JointState), self._chain.joint_names)
+                angles = raw_joint_values(raw, self._chain.joint_names)
                 self._followed.add(self._chain.forward(angles))
             except JointMessageError as reason:
                 self._watch.refuse("joint_states", reason)

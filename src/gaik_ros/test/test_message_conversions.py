@@ -16,6 +16,7 @@ from gaik_ros.conversions import (
     joint_state,
     joint_values,
     point_to_array,
+    raw_joint_values,
     stamp_now,
 )
 
@@ -47,6 +48,14 @@ def test_a_joint_state_is_read_by_name_whatever_the_order(position, velocity, ef
     message = deserialize_message(serialize_message(message), JointState)
     for field, values in (("position", position), ("velocity", velocity), ("effort", effort)):
         np.testing.assert_array_equal(joint_values(message, NAMES, field), values)
+
+
+def test_a_joint_state_is_read_from_the_wire_and_refused_where_it_is_cut():
+    raw = serialize_message(joint_state(NAMES, position=[1, 2, 3], effort=[4, 5, 6]))
+    np.testing.assert_array_equal(raw_joint_values(raw, NAMES), [1.0, 2.0, 3.0])
+    np.testing.assert_array_equal(raw_joint_values(raw, NAMES, "effort"), [4.0, 5.0, 6.0])
+    with pytest.raises(JointMessageError, match=r"^its 40 bytes are no JointState$"):
+        raw_joint_values(raw[:40], NAMES)
 
 
 def test_foreign_joints_are_passed_over():

@@ -2,10 +2,12 @@
 
 import numpy as np
 import pytest
-from ros_bench import Bench, overrides, wait_until
+from rclpy.serialization import serialize_message
+from ros_bench import NAMES, Bench, overrides, wait_until
 from visualization_msgs.msg import Marker, MarkerArray
 
 from gaik_core import KinematicChain
+from gaik_ros.conversions import joint_state
 from gaik_ros.path_markers import PathMarkers, Trail
 from gaik_ros.run import running
 
@@ -65,6 +67,22 @@ def test_rviz_can_draw_them(seen):
         assert found.scale.x > 0.0
         assert found.color.a == 1.0
     assert marker(arrays, "desired").type == Marker.LINE_STRIP
+
+
+def test_a_state_that_is_cut_is_refused_and_the_next_good_one_drawn(context):
+    bench, arrays = Bench(context), []
+    bench.create_subscription(MarkerArray, "path_markers/markers", arrays.append, 10)
+    node = PathMarkers(context=context, parameter_overrides=overrides(rate=20.0))
+    cut = serialize_message(joint_state(NAMES, position=bench.angles))[:-10]
+    with running([bench, node], context):
+
+        def is_refused():
+            bench.states.publish(cut)
+            return node._watch.refused.get("joint_states", 0) > 0
+
+        wait_until(is_refused, "a cut state is taken")
+        bench.publishing = True
+        wait_until(lambda: arrays and len(marker(arrays, "followed_now").points) == 1, "it draws no more")
 
 
 def test_a_trail_forgets_what_is_old_and_does_not_repeat_what_stands_still():

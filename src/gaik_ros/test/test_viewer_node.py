@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import rclpy
+from rclpy.serialization import serialize_message
 from ros_bench import NAMES, Bench, overrides, wait_until
 
 from gaik_core import KinematicChain
@@ -151,7 +152,11 @@ def test_a_malformed_state_is_refused_and_the_next_good_one_drawn(context):
     publisher = driver.create_publisher(type(joint_state(NAMES)), "joint_states", 10)
     viewer = viewer_in(context)
     with running([driver, viewer], context):
-        for bad in (joint_state(["a", "b"], position=[1, 2]), joint_state(NAMES, position=[np.nan, 0, 0])):
+        for bad in (
+            joint_state(["a", "b"], position=[1, 2]),
+            joint_state(NAMES, position=[np.nan, 0, 0]),
+            serialize_message(joint_state(NAMES, position=[1, 2, 3]))[:-10],
+        ):
             refused = viewer._watch.refused.get("joint_states", 0)
 
             def is_refused(bad=bad, refused=refused):

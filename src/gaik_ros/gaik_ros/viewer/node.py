@@ -17,11 +17,10 @@ from geometry_msgs.msg import Point
 from numpy.typing import NDArray
 from rclpy.node import Node
 from rclpy.qos import QoSProfile, ReliabilityPolicy
-from rclpy.serialization import deserialize_message
 from sensor_msgs.msg import JointState
 
 from gaik_core import KinematicChain
-from gaik_ros.conversions import JointMessageError, joint_values, point_to_array
+from gaik_ros.conversions import JointMessageError, joint_values, point_to_array, raw_joint_values
 from gaik_ros.deadline_loop import DeadlineLoop, LoopThread
 from gaik_ros.health import LOOP_PARAMETERS, OK, Health, HealthReporter
 from gaik_ros.parameters import Parameter, ParameterTable
@@ -256,7 +255,7 @@ class Viewer(Node):
         if state is None:
             return None
         try:
-            return joint_values(deserialize_message(state[0], JointState), self._names)
+            return raw_joint_values(state[0], self._names)
         except JointMessageError as reason:
             self._watch.refuse("joint_states", reason)
             return None
