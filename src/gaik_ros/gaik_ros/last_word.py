@@ -13,9 +13,7 @@ from rclpy.publisher import Publisher
 
 REPEATS = 5  # a best-effort subscriber may lose one of them
 PAUSE = 0.01  # s between two
-PATIENCE = Duration(
-    seconds=0.2
-)  # for the reliable ones to have it; one that hangs must not hold the node's end up
+PATIENCE = Duration(seconds=0.2)  # for the reliable ones to have it: one that hangs must not hold the end up
 
 
 def say_last(publisher: Publisher, say: Callable[[], None], context: Context) -> None:
