@@ -24,10 +24,14 @@ class Trajectory:
     end: float
     lap: float
 
+    def folded(self, time: float) -> float:
+        """`time` s of an endless repetition as the time into its lap."""
+        folded = time % self.lap
+        return folded if self.lap - folded > EARLY else 0.0
+
     def looped(self, time: float) -> Array:
         """The position at `time` s of an endless repetition."""
-        folded = time % self.lap
-        return self.position(folded if self.lap - folded > EARLY else 0.0)
+        return self.position(self.folded(time))
 
     def once(self, time: float) -> Array:
         """The position at `time` s of a single run, which stays at its end."""
@@ -36,6 +40,34 @@ class Trajectory:
     def done(self, time: float) -> bool:
         """Whether a single run is at its end at `time` s."""
         return time >= self.end - EARLY
+
+
+class Progress:
+    """How far along a trajectory we are; it goes on from there when the trajectory or looping changes."""
+
+    def __init__(self, trajectory: Trajectory) -> None:
+        self._trajectory = trajectory
+        self.time = 0.0  # s into the lap
+        self.done = False
+
+    def restart(self) -> None:
+        """Go back to the beginning."""
+        self.time, self.done = 0.0, False
+
+    def change(self, trajectory: Trajectory) -> None:
+        """Follow another trajectory from the same share of its lap."""
+        self.time *= trajectory.lap / self._trajectory.lap
+        self._trajectory = trajectory
+
+    def step(self, dt: float, loop: bool) -> Array:
+        """The position (3,) m now; `dt` s later is the next. Without `loop`, the lap we are in is the last."""
+        trajectory = self._trajectory
+        if loop:
+            self.time = trajectory.folded(self.time)
+        position = trajectory.looped(self.time) if loop else trajectory.once(self.time)
+        self.done = not loop and trajectory.done(self.time)
+        self.time += dt
+        return position
 
 
 def along_path(path: Path, lap_time: float) -> Trajectory:

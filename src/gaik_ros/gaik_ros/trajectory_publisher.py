@@ -19,7 +19,7 @@ from gaik_ros.health import LOOP_PARAMETERS, OK, Health, HealthReporter
 from gaik_ros.parameters import Parameter, ParameterError, ParameterSet, ParameterTable
 from gaik_ros.point_file import read_points
 from gaik_ros.run import run
-from gaik_ros.trajectory import Trajectory, along_path, through_points
+from gaik_ros.trajectory import Array, Progress, Trajectory, along_path, through_points
 from gaik_ros.watch import Watch
 
 CIRCLE, LEMNISCATE, POINTS = "circle", "lemniscate", "points"
@@ -55,14 +55,21 @@ TABLE = ParameterTable(
 )
 
 
-def trajectory_of(values: ParameterSet) -> Trajectory:
-    """The trajectory that the parameters describe. ValueError: no file is named, or it is no list of points."""
-    if values.path == POINTS:
-        if not values.file:
-            raise ParameterError(
-                "parameter 'file' is '': the path points needs a CSV file with the columns x, y, z"
-            )
-        return through_points(read_points(values.file), values.rate)
+def points_of(values: ParameterSet) -> Array | None:
+    """The points (n, 3) in m of the file, None for another path. ValueError: no file, or no list of points."""
+    if values.path != POINTS:
+        return None
+    if not values.file:
+        raise ParameterError(
+            "parameter 'file' is '': the path points needs a CSV file with the columns x, y, z"
+        )
+    return read_points(values.file)
+
+
+def trajectory_of(values: ParameterSet, points: Array | None) -> Trajectory:
+    """The trajectory that the parameters describe: through `points` (n, 3) in m where there are any."""
+    if points is not None:
+        return through_points(points, values.rate)
     path: Path
     if values.path == CIRCLE:
         path = Circle(radius=values.radius, tilt=values.circle_tilt, centre=values.centre)
@@ -78,8 +85,8 @@ class TrajectoryPublisher(Node):
         super().__init__(TABLE.node, **node_kwargs)
         self._lock = threading.Lock()  # services start and stop what the loop's thread follows
         self.values = TABLE.declare(self, self._configure)
-        self._trajectory = trajectory_of(self.values)
-        self._time = 0.0
+        self._points = points_of(self.values)
+        self._progress = Progress(trajectory_of(self.values, self._points))
         self._running = self.values.autostart
         self._sent = 0
         self._watch = Watch(self)
@@ -92,20 +99,20 @@ class TrajectoryPublisher(Node):
         )
 
     def _configure(self, values: ParameterSet) -> None:
-        trajectory = trajectory_of(values)
+        # A file is read when it is chosen, not at every change: it may be gone by then.
+        chosen = any(values[name] != self.values[name] for name in ("path", "file"))
+        points = points_of(values) if chosen else self._points
+        trajectory = trajectory_of(values, points)
         with self._lock:
-            self._trajectory = trajectory
+            self._points = points
+            self._progress.change(trajectory)
 
     def _tick(self, dt: float) -> None:
         with self._lock:
             if not self._running:
                 return
-            if self.values.loop:
-                position = self._trajectory.looped(self._time)
-            else:
-                position = self._trajectory.once(self._time)
-                self._running = not self._trajectory.done(self._time)
-            self._time += dt
+            position = self._progress.step(dt, self.values.loop)
+            self._running = not self._progress.done
         self._publisher.publish(array_to_point(position))
         self._sent += 1
         if not self._running:
@@ -113,7 +120,8 @@ class TrajectoryPublisher(Node):
 
     def _on_start(self, request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
         with self._lock:
-            self._time, self._running = 0.0, True
+            self._progress.restart()
+            self._running = True
         response.success, response.message = True, f"{self.values.path} from its beginning"
         return response
 
@@ -125,7 +133,7 @@ class TrajectoryPublisher(Node):
 
     def _path_health(self) -> Health:
         message = f"{self.values.path}: {'running' if self._running else 'stopped'}"
-        return Health(OK, message, {"sent": self._sent, "time_s": self._time})
+        return Health(OK, message, {"sent": self._sent, "time_s": self._progress.time})
 
 
 def main(args: Sequence[str] | None = None) -> int:

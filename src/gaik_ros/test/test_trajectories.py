@@ -5,7 +5,7 @@ import pytest
 
 from gaik_core.paths import Circle
 from gaik_ros.point_file import PointFileError, read_points
-from gaik_ros.trajectory import along_path, through_points
+from gaik_ros.trajectory import Progress, along_path, through_points
 
 
 def test_a_lap_takes_its_time_and_repeats():
@@ -31,6 +31,48 @@ def test_a_single_point_is_a_trajectory_too():
     way = through_points([[1, 2, 3]], 10.0)
     assert way.done(0.0)
     np.testing.assert_array_equal(way.looped(12.3), [1, 2, 3])
+
+
+CIRCLE, PERIOD = Circle(radius=0.05), 0.01
+
+
+def walked(progress, steps, loop=True):
+    return np.array([progress.step(PERIOD, loop) for _ in range(steps)])
+
+
+def largest_step(points):
+    return np.linalg.norm(np.diff(points, axis=0), axis=1).max()
+
+
+@pytest.mark.parametrize("lap_time", [3.0, 7.0, 20.0])
+@pytest.mark.parametrize("steps", [400, 630, 4000])  # in the first lap, at its end, and in a later one
+def test_progress_goes_on_from_where_it_is_when_the_lap_time_changes(steps, lap_time):
+    progress = Progress(along_path(CIRCLE, 6.3))
+    points = walked(progress, steps)
+    progress.change(along_path(CIRCLE, lap_time))
+    points = np.concatenate([points, walked(progress, 500)])
+    assert largest_step(points) < 1.01 * 2 * np.pi * 0.05 * PERIOD / min(lap_time, 6.3)
+
+
+@pytest.mark.parametrize("steps", [250, 300])
+def test_progress_that_loops_no_more_ends_with_the_lap_it_is_in(steps):
+    progress = Progress(along_path(CIRCLE, 1.0))
+    points = walked(progress, steps)
+    assert not progress.done
+    points = np.concatenate([points, walked(progress, 301 - steps, loop=False)])
+    assert progress.done
+    assert largest_step(points) < 1.01 * 2 * np.pi * 0.05 * PERIOD
+    np.testing.assert_allclose(points[-1], CIRCLE.position(0.0), atol=1e-9)
+
+
+def test_progress_through_points_says_each_once_a_round_and_begins_anew():
+    points = np.arange(15.0).reshape(5, 3)
+    progress = Progress(through_points(points, 100.0))
+    np.testing.assert_array_equal(walked(progress, 12), np.tile(points, (3, 1))[:12])
+    np.testing.assert_array_equal(walked(progress, 3, loop=False), points[2:])
+    assert progress.done
+    progress.restart()
+    np.testing.assert_array_equal(walked(progress, 2), points[:2])
 
 
 def write(tmp_path, text):

@@ -100,3 +100,47 @@ def test_a_change_of_path_is_refused_whole_where_the_file_is_bad(start, tmp_path
     trigger(bench, "start")
     wait_until(lambda: bench.setpoints)
     np.testing.assert_allclose(heard(bench)[0], [0.05, 0.0, 0.0], atol=1e-12)
+
+
+def largest_step(bench):
+    return np.linalg.norm(np.diff(heard(bench), axis=0), axis=1).max()
+
+
+def test_another_lap_time_goes_on_from_where_the_setpoint_is(start):
+    bench, node = start(lap_time=6.3)
+    skipped_before = node.loop.schedule.skipped
+    trigger(bench, "start")
+    wait_until(lambda: len(bench.setpoints) > 100)
+    assert bench.change("trajectory_publisher", lap_time=3.0).successful
+    count = len(bench.setpoints)
+    wait_until(lambda: len(bench.setpoints) > count + 50)
+    left_out = node.loop.schedule.skipped - skipped_before
+    assert largest_step(bench) < (1 + left_out) * 1.1 * 2 * np.pi * 0.05 / 3.0 / 100
+
+
+def test_a_path_that_shall_not_loop_any_more_goes_on_to_the_end_of_its_lap(start):
+    bench, node = start(lap_time=1.0)
+    skipped_before = node.loop.schedule.skipped
+    trigger(bench, "start")
+    wait_until(lambda: len(bench.setpoints) > 130)
+    assert bench.change("trajectory_publisher", loop=False).successful
+    wait_until(lambda: not node._running and len(bench.setpoints) == node._sent)
+    left_out = node.loop.schedule.skipped - skipped_before
+    assert largest_step(bench) < (1 + left_out) * 1.1 * 2 * np.pi * 0.05 / 100
+    np.testing.assert_allclose(heard(bench)[-1], Circle().position(0.0), atol=1e-12)
+
+
+def test_a_file_of_points_is_read_when_it_is_chosen_and_not_again(start, tmp_path):
+    file = tmp_path / "points.csv"
+    file.write_text("x,y,z\n0.01,0.02,0.03\n")
+    bench, node = start(path="points", file=str(file))
+    file.unlink()
+    assert bench.change("trajectory_publisher", loop=False, diagnostics__rate_warn=0.9).successful
+    refused = bench.change("trajectory_publisher", file=str(tmp_path / "another.csv"))
+    assert not refused.successful
+    assert "another.csv" in refused.reason
+    trigger(bench, "start")
+    wait_until(lambda: not node._running and len(bench.setpoints) == node._sent)
+    np.testing.assert_array_equal(heard(bench), [[0.01, 0.02, 0.03]])
+    assert bench.change("trajectory_publisher", path="circle").successful
+    assert not bench.change("trajectory_publisher", path="points").successful
