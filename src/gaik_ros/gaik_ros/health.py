@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
@@ -29,6 +30,8 @@ LOOP_PARAMETERS = (
 )
 """Rows for the table of every node that has a loop."""
 
+MOST_SILENT = 2.0  # periods without a tick after which a loop does not run
+
 
 @dataclass(frozen=True)
 class Health:
@@ -50,22 +53,23 @@ def worst(findings: Sequence[tuple[bytes, str]], good: str = "ok") -> tuple[byte
     return level, "; ".join(message for found, message in findings if found == level)
 
 
-def loop_health(report: PeriodReport, rate: float, values: ParameterSet) -> Health:
-    """The health of a loop set to `rate` Hz from one window's report."""
-    findings = []
+def loop_health(report: PeriodReport, rate: float, values: ParameterSet, silence: float = math.inf) -> Health:
+    """The health of a loop set to `rate` Hz from one window's report; the last tick was `silence` s ago."""
+    findings, good = [], f"{report.rate:.1f} Hz" if report.ticks else "no period is over yet"
     if report.ticks == 0:
-        findings.append((ERROR, "the loop does not run"))
+        if silence > MOST_SILENT / rate:
+            findings.append((ERROR, "the loop does not run"))
     else:
         share = report.rate / rate
         if share < values["diagnostics.rate_error"]:
             findings.append((ERROR, f"runs at {report.rate:.1f} of {rate:g} Hz"))
         elif share < values["diagnostics.rate_warn"]:
             findings.append((WARN, f"runs at {report.rate:.1f} of {rate:g} Hz"))
-        if report.periods.maximum > values["diagnostics.period_max_error"]:
+        if report.periods.maximum > max(values["diagnostics.period_max_error"], 1.5 / rate):
             findings.append((ERROR, f"stalled for {report.periods.maximum:.3f} s"))
         elif report.periods.p99 > max(values["diagnostics.period_p99_warn"], 1.5 / rate):
             findings.append((WARN, f"99th percentile of the period is {report.periods.p99:.4f} s"))
-    level, message = worst(findings, f"{report.rate:.1f} Hz")
+    level, message = worst(findings, good)
     figures = {
         "rate_hz": rate,
         "reached_hz": report.rate,
@@ -109,11 +113,16 @@ class HealthReporter:
         self._publisher = node.create_publisher(DiagnosticArray, "/diagnostics", qos.DIAGNOSTICS)
         self._steady = Clock(clock_type=ClockType.STEADY_TIME)
         self._timer = node.create_timer(1.0, self.report, clock=self._steady)
+        self._began = time.monotonic()
         self.last_loop: PeriodReport | None = None
 
     def _loop_health(self, loop: DeadlineLoop, values: ParameterSet) -> Health:
-        self.last_loop = loop.periods.take()
-        return loop_health(self.last_loop, loop.rate, values)
+        report = loop.periods.take()
+        silence = time.monotonic() - (loop.periods.last or self._began)
+        # In most of its windows a loop of less than 1 Hz has no tick: the report before stands until it is late.
+        if report.ticks or self.last_loop is None or silence > MOST_SILENT / loop.rate:
+            self.last_loop = report
+        return loop_health(self.last_loop, loop.rate, values, silence)
 
     def report(self) -> None:
         """Publish now."""

@@ -60,7 +60,7 @@ class PeriodWindow:
     def __init__(self, period: float) -> None:
         self._period = period
         self._times = TimeWindow(capacity=100_000)
-        self._last: float | None = None
+        self.last: float | None = None  # s, when the last tick was
         self._overruns = 0
         self.ticks = 0  # since the start
         self.all_overruns = 0
@@ -68,13 +68,13 @@ class PeriodWindow:
     def add(self, now: float, skipped: int = 0) -> None:
         """Note a tick at `now`, s, before which `skipped` ticks were left out."""
         self.ticks += 1
-        if self._last is not None:
-            elapsed = now - self._last
+        if self.last is not None:
+            elapsed = now - self.last
             self._times.add(elapsed)
             late = skipped + (1 if elapsed > 2.0 * self._period else 0)
             self._overruns += late
             self.all_overruns += late
-        self._last = now
+        self.last = now
 
     def take(self) -> PeriodReport:
         """The report of the window since the last take, which begins a new window."""

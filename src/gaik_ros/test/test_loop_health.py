@@ -40,6 +40,18 @@ def test_a_slow_loop_is_not_told_off_for_its_own_period():
     assert loop_health(report(rate=10.0, p99=0.101, longest=0.102, ticks=10), 10.0, VALUES).level == OK
 
 
+@pytest.mark.parametrize("rate", [0.01, 0.5, 2.0])
+def test_a_loop_slower_than_the_reports_is_well_as_long_as_no_tick_is_missing(rate):
+    period = 1.0 / rate
+    one = report(rate, p99=period, longest=1.01 * period, ticks=1)
+    assert loop_health(one, rate, VALUES).level == OK
+    assert loop_health(report(rate, longest=1.6 * period, ticks=1), rate, VALUES).level == ERROR
+    none = PeriodReport(0, Percentiles.of([]), 0, 0.0)
+    assert loop_health(none, rate, VALUES, silence=1.9 * period).level == OK
+    late = loop_health(none, rate, VALUES, silence=2.1 * period)
+    assert (late.level, late.message) == (ERROR, "the loop does not run")
+
+
 def test_the_worst_wins_and_says_why():
     assert worst([]) == (OK, "ok")
     assert worst([(WARN, "a"), (ERROR, "b"), (ERROR, "c")]) == (ERROR, "b; c")

@@ -144,3 +144,15 @@ def test_a_file_of_points_is_read_when_it_is_chosen_and_not_again(start, tmp_pat
     np.testing.assert_array_equal(heard(bench), [[0.01, 0.02, 0.03]])
     assert bench.change("trajectory_publisher", path="circle").successful
     assert not bench.change("trajectory_publisher", path="points").successful
+
+
+@pytest.mark.parametrize("rate", [0.5, 2.0])
+def test_a_slow_path_is_not_called_stalled(start, rate):
+    bench, node = start(rate=rate)
+    name = "trajectory_publisher: loop"
+    wait_until(lambda: node.loop.periods.ticks > 2)
+
+    def newest():
+        return [status for m in bench.diagnostics for status in m.status if status.name == name][-4:]
+
+    wait_until(lambda: len(newest()) == 4 and all(status.level != b"\x02" for status in newest()))
