@@ -30,7 +30,7 @@ class ParameterError(ValueError):
 class Parameter:
     """One parameter. Its type is that of `default`; a tuple of floats also takes one float for all joints.
 
-    A `default` of None is a float that may be left unset.
+    A `default` of None is a float that may be left unset, and be unset again.
     """
 
     name: str
@@ -217,9 +217,8 @@ class ParameterTable:
         def on_set(changes: Sequence[RosParameter]) -> SetParametersResult:
             try:
                 changed = {p.name: rows[p.name].convert(p.value) for p in changes if p.name in rows}
-                if not changed:
+                if changed.items() <= values.items():
                     return SetParametersResult(successful=True)
-                _refuse_unsetting(changes, rows)
                 candidate = ParameterSet({**values, **changed})
                 if on_change is not None:
                     on_change(candidate)
@@ -229,7 +228,14 @@ class ParameterTable:
             values._values = candidate._values
             return SetParametersResult(successful=True)
 
+        def declare_unset(changes: Sequence[RosParameter]) -> None:
+            """To unset a parameter is, to rclpy, to delete it: it could not be set any more."""
+            for name in (change.name for change in changes):
+                if name in rows and not node.has_parameter(name):
+                    node.declare_parameter(name, None, rows[name].descriptor(), ignore_override=True)
+
         node.add_on_set_parameters_callback(on_set)
+        node.add_post_set_parameters_callback(declare_unset)
         return values
 
     def declare_first(self, node: Node, name: str) -> Any:
@@ -251,12 +257,6 @@ def _declared(node: Node, row: Parameter) -> Value:
     if not node.has_parameter(row.name):
         node.declare_parameter(row.name, default, row.descriptor())
     return row.convert(node.get_parameter(row.name).value)
-
-
-def _refuse_unsetting(changes: Sequence[RosParameter], rows: Mapping[str, Parameter]) -> None:
-    for change in changes:
-        if change.name in rows and change.type_ == RosParameter.Type.NOT_SET:
-            raise ParameterError(f"parameter '{change.name}' cannot be deleted")
 
 
 def check_joint_names(names: Sequence[str]) -> None:

@@ -31,7 +31,7 @@ Made from the tables in the code by `python -m gaik_ros.reference_page touch_sim
 An integer is taken where a double is wanted. A bad value at the start ends the node with one line and the exit code
 2; a bad change of a running node is refused, and the old value stays in force. Of several that are set at once,
 atomically, none is taken where one is bad. "One for each joint" takes one number, or a list in the order of the joints.
-Read-only parameters are set at the start.
+Read-only parameters are set at the start. What is not set by default, `ros2 param delete` unsets again.
 """
 
 FILE_INTRODUCTION = """\

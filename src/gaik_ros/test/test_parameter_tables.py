@@ -134,6 +134,18 @@ def test_read_only_and_deletion_are_refused(make):
     assert node.get_parameter("rate").value == 100.0
 
 
+def test_what_may_be_unset_can_be_unset_again_and_set_once_more(make):
+    node, values = make(**{"gains.left.p": 1.5})
+    assert change(node, **{"gains.left.p": None, "rate": 20.0}).successful
+    assert (values["gains.left.p"], values.rate) == (None, 20.0)
+    assert node.get_parameter("gains.left.p").value is None
+    assert change(node, **{"gains.left.p": None}).successful
+    assert not change(node, **{"gains.left.p": -1.0}).successful
+    assert change(node, **{"gains.left.p": 4}).successful
+    assert values["gains.left.p"] == 4.0
+    assert node.describe_parameter("gains.left.p").description == "a gain of one joint"
+
+
 def test_other_parameters_of_the_node_are_left_alone(make):
     node, _ = make(on_change=lambda values: pytest.fail("nothing of ours has changed"))
     node.declare_parameter("other", 1)
