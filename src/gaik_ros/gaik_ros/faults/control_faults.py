@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
 from typing import Any
 
 import numpy as np
-from std_srvs.srv import SetBool, Trigger
+from std_srvs.srv import Trigger
 
 from gaik_ros.conversions import joint_values
+from gaik_ros.faults.borrowed import changed, disabled
 from gaik_ros.faults.fault import Check, Fault, Need
 from gaik_ros.faults.measures import follows, largest_step
 from gaik_ros.faults.stage import ARRIVED, Array, Stage
@@ -24,17 +23,6 @@ FIRST = 5  # commands after taking hold of the device: on a machine in time, the
 HELD = 1e-6  # rad/(N·m): the gain of a device that a hand holds fast
 
 
-@contextmanager
-def _changed(stage: Stage, node: str, values: Mapping[str, Any]) -> Iterator[tuple[bool, str]]:
-    """Change parameters of a node for the length of the block."""
-    before = stage.remote.parameters(node, values)
-    answer = stage.remote.change(node, values)
-    try:
-        yield answer
-    finally:
-        stage.remote.change(node, before)
-
-
 def _saturation(seconds: float, integral_gain: float | None) -> Any:
     """A hand holds the device for `seconds` while it is sent far away, then lets go."""
 
@@ -42,10 +30,10 @@ def _saturation(seconds: float, integral_gain: float | None) -> Any:
         gains = PATIENT | ({} if integral_gain is None else {"gains.i": integral_gain})
         limit = stage.facts.effort_max
         target = stage.point(stage.facts.far)
-        with _changed(stage, "pid_controller", gains):
+        with changed(stage.remote, "pid_controller", gains):
             with (
-                _changed(stage, "pid_controller", EVEN_IF_LATE),
-                _changed(stage, "touch_sim", {"gain": HELD}),
+                changed(stage.remote, "pid_controller", EVEN_IF_LATE),
+                changed(stage.remote, "touch_sim", {"gain": HELD}),
             ):
                 _lead(stage, target)
                 mark = stage.mark()
@@ -119,7 +107,7 @@ def _good_parameters(stage: Stage) -> list[Check]:
     with stage.moving():
         mark = stage.mark()
         for node, values in _present(stage, GOOD):
-            with _changed(stage, node, values) as (successful, _):
+            with changed(stage.remote, node, values) as (successful, _):
                 taken.append(successful)
                 stage.sleep(0.3)
         on_course = follows(stage, mark)
@@ -167,11 +155,10 @@ def _present(
 def _enable(stage: Stage) -> list[Check]:
     with stage.moving():
         mark = stage.mark()
-        stage.remote.call(SetBool, "pid_controller/enable", SetBool.Request(data=False))
-        stage.sleep(0.7)
-        off = stage.since(mark).joints("joint_command", stage.names, "effort").values[-20:]
-        mark = stage.mark()
-        stage.remote.call(SetBool, "pid_controller/enable", SetBool.Request(data=True))
+        with disabled(stage.remote):
+            stage.sleep(0.7)
+            off = stage.since(mark).joints("joint_command", stage.names, "effort").values[-20:]
+            mark = stage.mark()
         back = follows(stage)
         on = stage.since(mark).joints("joint_command", stage.names, "effort").values
     largest = float(np.abs(off).max(initial=0.0))
@@ -189,18 +176,16 @@ def _enable(stage: Stage) -> list[Check]:
 def _under_load(stage: Stage) -> list[Check]:
     """Gains change and the controller is reset while a hand holds the device off its reference."""
     with (
-        _changed(stage, "touch_sim", {"gain": HELD}),
-        _changed(stage, "pid_controller", PATIENT | EVEN_IF_LATE),
+        changed(stage.remote, "touch_sim", {"gain": HELD}),
+        changed(stage.remote, "pid_controller", PATIENT | EVEN_IF_LATE),
     ):
         _lead(stage, stage.between(0.5))
         stage.sleep(1.0)
         mark = stage.mark()
-        before = stage.remote.parameters("pid_controller", ["gains.p", "gains.d"])
-        stage.remote.change("pid_controller", {"gains.p": 1.0, "gains.d": 0.1})
-        stage.sleep(0.7)
-        stage.remote.call(Trigger, "pid_controller/reset", Trigger.Request())
-        stage.sleep(0.3)
-        stage.remote.change("pid_controller", before)
+        with changed(stage.remote, "pid_controller", {"gains.p": 1.0, "gains.d": 0.1}):
+            stage.sleep(0.7)
+            stage.remote.call(Trigger, "pid_controller/reset", Trigger.Request())
+            stage.sleep(0.3)
         stage.sleep(0.7)
         efforts = stage.since(mark).joints("joint_command", stage.names, "effort").values
     change = float(np.ptp(efforts, axis=0).max())

@@ -5,7 +5,7 @@ from __future__ import annotations
 import threading
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 
 import numpy as np
 from geometry_msgs.msg import Point
@@ -14,6 +14,7 @@ from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import JointState
 
 from gaik_ros.conversions import array_to_point, joint_state
+from gaik_ros.faults.borrowed import changed
 from gaik_ros.faults.facts import admissible
 from gaik_ros.faults.fault import Check, Fault
 from gaik_ros.faults.measures import follows, reported
@@ -142,15 +143,14 @@ def _clock_steps(stage: Stage) -> list[Check]:
 
     try:
         with stage.moving(), _repeating(CLOCK_RATE, tick):
-            for node in nodes:
-                stage.remote.change(node, {"use_sim_time": True})
-            stage.sleep(HAND_OVER)
-            mark = stage.mark()
-            stage.sleep(4.0 * STEP_EVERY)
-            on_course = follows(stage, mark)
-            recording = stage.since(mark)
-            for node in nodes:
-                stage.remote.change(node, {"use_sim_time": False})
+            with ExitStack() as borrowed:
+                for node in nodes:
+                    borrowed.enter_context(changed(stage.remote, node, {"use_sim_time": True}))
+                stage.sleep(HAND_OVER)
+                mark = stage.mark()
+                stage.sleep(4.0 * STEP_EVERY)
+                on_course = follows(stage, mark)
+                recording = stage.since(mark)
             stage.sleep(HAND_OVER)
     finally:
         stage.probe.destroy_publisher(publisher)

@@ -10,6 +10,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from gaik_ros.faults.borrowed import changed
 from gaik_ros.faults.fault import Check, Fault
 from gaik_ros.faults.measures import LATE, STILL, at_rest_since, longest_gap
 from gaik_ros.faults.stage import ARRIVED, Stage
@@ -140,17 +141,13 @@ def _stop_latched(stage: Stage) -> list[Check]:
 
 def _stop_streamed(stage: Stage) -> list[Check]:
     timeout = stage.facts.setpoint_timeout
-    before = stage.remote.parameters("ik_node", ["setpoint_mode", "max_joint_speed"])
     # Slow enough that the last one, far away, would take several times the timeout.
     slow = 0.05 * float(np.abs(stage.facts.away - stage.facts.home).max()) / timeout
-    stage.remote.change("ik_node", {"setpoint_mode": "stream", "max_joint_speed": slow})
-    try:
+    with changed(stage.remote, "ik_node", {"setpoint_mode": "stream", "max_joint_speed": slow}):
         mark, sent = stage.mark(), time.monotonic()
         stage.send(stage.between(1.0))
         stage.sleep(timeout + 1.5)
         recording = stage.since(mark)
-    finally:
-        stage.remote.change("ik_node", before)
     ended = at_rest_since(recording, "joint_reference", stage.names, "position", 0.0) - sent
     left = stage.distance(stage.between(1.0))
     return [
