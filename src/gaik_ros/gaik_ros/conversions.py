@@ -13,7 +13,7 @@ import numpy as np
 from builtin_interfaces.msg import Time
 from geometry_msgs.msg import Point
 from numpy.typing import ArrayLike, NDArray
-from rclpy.clock import Clock
+from rclpy.clock import Clock, ROSClock
 from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.serialization import deserialize_message
 from sensor_msgs.msg import JointState
@@ -30,6 +30,7 @@ __all__ = [
     "joint_values",
     "point_to_array",
     "raw_joint_values",
+    "ros_time",
     "stamp_now",
 ]
 
@@ -79,3 +80,8 @@ def raw_joint_values(raw: bytes, names: Sequence[str], field: str = "position") 
 def stamp_now(stamp: Time, clock: Clock) -> None:
     """Set `stamp` to the clock's time, without making a new one."""
     stamp.sec, stamp.nanosec = clock.now().seconds_nanoseconds()
+
+
+def ros_time(clock: Clock) -> int | None:
+    """The time in ns of a clock that /clock leads, None where it is the system's."""
+    return clock.now().nanoseconds if isinstance(clock, ROSClock) and clock.ros_time_is_active else None

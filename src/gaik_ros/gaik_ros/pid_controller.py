@@ -14,7 +14,7 @@ from sensor_msgs.msg import JointState
 from std_srvs.srv import SetBool, Trigger
 
 from gaik_ros import qos
-from gaik_ros.conversions import JointMessageError, fill, joint_state, joint_values, stamp_now
+from gaik_ros.conversions import JointMessageError, fill, joint_state, joint_values, ros_time, stamp_now
 from gaik_ros.deadline_loop import DeadlineLoop
 from gaik_ros.health import ERROR, LOOP_PARAMETERS, OK, WARN, Health, HealthReporter
 from gaik_ros.joint_control import ON_REFERENCE_TIMEOUT, ControlSettings, JointControl, Mode
@@ -22,6 +22,7 @@ from gaik_ros.last_word import say_last
 from gaik_ros.parameters import Parameter, ParameterSet, ParameterTable, check_joint_names
 from gaik_ros.pid import Gains
 from gaik_ros.run import run
+from gaik_ros.state_news import StateNews
 from gaik_ros.watch import Watch
 
 Array = NDArray[np.float64]
@@ -166,7 +167,7 @@ class PidController(Node):
             len(names), gains_of(self.values, names), settings_of(self.values), self.values.bumpless_time
         )
         self._state = self._reference = _Heard(None)
-        self._state_stamp = (0, 0)
+        self._news = StateNews()
         self._ticked = time.monotonic()
         self._mode = Mode.WAITING
         self._connect()
@@ -209,11 +210,11 @@ class PidController(Node):
         except JointMessageError as reason:
             self._watch.refuse("joint_states", reason)
             return
-        stamp, before = (message.header.stamp.sec, message.header.stamp.nanosec), self._state.position
-        if stamp == self._state_stamp != (0, 0) and before is not None and (position == before).all():
-            return  # a driver that repeats its last message has no news of the device
-        self._state_stamp = stamp
-        self._state = _Heard(position)
+        stamp = 1_000_000_000 * message.header.stamp.sec + message.header.stamp.nanosec
+        clock = ros_time(self.get_clock())
+        patience = 0.5 * self.values.state_timeout  # a clock that stands is known before the state is lost
+        if self._news.is_news(stamp, position, time.monotonic(), clock, patience):
+            self._state = _Heard(position)
 
     def _tick(self, dt: float) -> None:
         state, reference, now = self._state, self._reference, time.monotonic()
@@ -243,9 +244,10 @@ class PidController(Node):
         """Log a change of mode that a user should know of."""
         self._mode = mode
         if mode is Mode.STATE_LOST:
-            self.get_logger().error(
-                f"no joint_states for {self._control.settings.state_timeout:g} s: zero effort"
-            )
+            timeout = self._control.settings.state_timeout
+            repeats = time.monotonic() - self._news.repeated < 0.5 * timeout
+            missing = "news in joint_states, the same again and again," if repeats else "joint_states"
+            self.get_logger().error(f"no {missing} for {timeout:g} s: zero effort")
         elif mode is Mode.RELEASED or (mode is Mode.HOLDING and self._reference.position is not None):
             action = "holding position" if mode is Mode.HOLDING else "zero effort"
             self.get_logger().warning(f"no fresh joint_reference: {action}")

@@ -52,7 +52,7 @@ class Bench(Node):
         self.loop = DeadlineLoop(rate, self._tick)
         self.angles = np.array([0.1, 0.8, 0.9])
         self.publishing = self.moving = False
-        self.stamping = True
+        self.stamp = None  # of all states; None: the time
         self.referring = None  # angles to publish as a reference at every tick
         self._service_clients = {}
 
@@ -61,10 +61,10 @@ class Bench(Node):
             self.angles = self.angles + dt / 0.05 * np.array(self.commands[-1].effort)
         if self.publishing:
             message = joint_state(NAMES, position=self.angles)
-            if self.stamping:
+            if self.stamp is None:
                 stamp_now(message.header.stamp, self.get_clock())
             else:
-                message.header.stamp.sec = 1
+                message.header.stamp = self.stamp
             self.states.publish(message)
         if self.referring is not None:
             self.reference.publish(joint_state(NAMES, position=self.referring))

@@ -2,8 +2,10 @@
 
 import numpy as np
 import pytest
+from builtin_interfaces.msg import Time
 from rclpy.qos import QoSProfile, ReliabilityPolicy
 from ros_bench import NAMES, Bench, overrides, wait_until
+from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import JointState
 from std_srvs.srv import SetBool, Trigger
 
@@ -81,10 +83,36 @@ def test_lost_states_are_zero_effort_and_an_error_until_they_return(start):
 
 def test_states_that_only_repeat_an_old_stamp_are_lost_states(start):
     bench, node = start(state_timeout=0.2)
-    bench.stamping = False
+    bench.stamp = Time(sec=1)
     wait_until(lambda: node._control.mode == "state_lost")
-    bench.stamping = True
+    bench.stamp = None
     wait_until(lambda: node._control.mode == "holding")
+
+
+def test_states_under_a_paused_clock_are_not_lost(start):
+    bench, node = start(publishing=False, state_timeout=1.0, use_sim_time=True)
+    clock = bench.create_publisher(Clock, "/clock", 10)
+    wait_until(lambda: clock.get_subscription_count() > 0)
+
+    def tick():
+        clock.publish(Clock(clock=Time(sec=7)))
+        return node.get_clock().now().nanoseconds == 7_000_000_000
+
+    wait_until(tick)
+    bench.stamp = Time(sec=7)
+    bench.publishing = True
+    wait_until(lambda: node._control.mode == "holding")
+    modes = set()
+    count = len(bench.commands)
+    wait_until(lambda: modes.add(node._control.mode) or len(bench.commands) > count + 500)
+    assert modes == {"holding"}
+
+
+def test_what_is_missing_of_the_states_is_said(start, capfd):
+    bench, node = start(state_timeout=0.2)
+    bench.stamp = Time(sec=1)
+    wait_until(lambda: node._control.mode == "state_lost")
+    wait_until(lambda: "no news in joint_states" in capfd.readouterr().err)
 
 
 @pytest.mark.parametrize(
