@@ -13,6 +13,7 @@ import numpy as np
 from diagnostic_msgs.msg import DiagnosticStatus
 from geometry_msgs.msg import Point
 from numpy.typing import NDArray
+from rclpy.clock import Clock, ClockType
 from rclpy.node import Node
 from sensor_msgs.msg import JointState
 from std_srvs.srv import Trigger
@@ -138,6 +139,8 @@ class IkNode(Node):
             JointState, "joint_states", self._on_state, qos.JOINT_STATES_SUBSCRIPTION, raw=True
         )
         self.create_service(Trigger, "~/solve_from_here", self._on_solve_from_here)
+        # What waits is looked at again: with no states nothing else would say that it has waited too long.
+        self._look_again = self.create_timer(0.1, self._answer, clock=Clock(clock_type=ClockType.STEADY_TIME))
 
     def _configure(self, values: ParameterSet) -> None:
         ik, settings = ik_of(self.chain, values), settings_of(self.chain, values)
@@ -153,7 +156,7 @@ class IkNode(Node):
         self._received += 1
         position = point_to_array(message)
         if not (np.abs(position) <= self.values.setpoint_bound).all():  # false for NaN too
-            self._refuse(position)
+            self._refuse(self._received, position, self._absurdity(position))
             return
         superseded = self._newest is not None
         self._newest = _Setpoint(position, self._received, time.monotonic())
@@ -164,19 +167,27 @@ class IkNode(Node):
             # Answered after the messages that are already here, so that a flood does not delay the newest.
             self.executor.create_task(self._answer)
 
-    def _refuse(self, position: Array) -> None:
+    def _absurdity(self, position: Array) -> str:
+        """What is wrong with a position that is none."""
         if np.isfinite(position).all():
-            reason = f"{position.tolist()}: a coordinate is beyond {self.values.setpoint_bound:g} m"
-        else:
-            reason = f"{position.tolist()}: every coordinate must be finite"
+            return f"{position.tolist()}: a coordinate is beyond {self.values.setpoint_bound:g} m"
+        return f"{position.tolist()}: every coordinate must be finite"
+
+    def _refuse(self, sequence: int, position: Array, reason: str) -> None:
         self._refused += 1
         self._watch.refuse("setpoint", reason)
-        self._publish_verdict(Verdict(self._received, position, Result.REFUSED, f"refused, {reason}"))
+        self._publish_verdict(Verdict(sequence, position, Result.REFUSED, f"refused, {reason}"))
 
     def _answer(self) -> None:
         """Answer the newest setpoint, if it has not been; let it wait where the device is not known."""
         setpoint = self._newest
         if setpoint is None:
+            return
+        now = time.monotonic()
+        if self._follower.overdue(setpoint.time, now):
+            self._newest = None
+            reason = f"waited {now - setpoint.time:.1f} s for joint_states to start from"
+            self._refuse(setpoint.sequence, setpoint.position, reason)
             return
         if not self._follower.started and not self._start():
             self._tell_waiting(setpoint)

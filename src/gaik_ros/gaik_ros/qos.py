@@ -48,7 +48,8 @@ TOPICS = (
         SETPOINT,
         "One sent once by hand must arrive, and `ros2 topic pub` offers reliable. The newest wins, in the node and "
         "not in the middleware, so that the superseded ones are counted: depth for a burst. "
-        "Volatile: a setpoint from before a node's start must not move the arm at its start.",
+        "Volatile: a setpoint from before a node's start must not move the arm at its start. Nor must one that waited "
+        "for the first joint_states: after 2 s it is refused.",
     ),
     Topic(
         "joint_reference",

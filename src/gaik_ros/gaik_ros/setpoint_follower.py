@@ -16,6 +16,8 @@ Array = NDArray[np.float64]
 LATCH, STREAM = "latch", "stream"
 SETPOINT_MODES = (LATCH, STREAM)
 
+LONGEST_WAIT = 2.0  # s: a setpoint that waited longer for the device would move it when nobody expects it
+
 
 @dataclass(frozen=True)
 class FollowerSettings:
@@ -53,6 +55,10 @@ class SetpointFollower:
         position = self._ik.onto_limits(position)
         self._angles, self._advanced, self.started = position, now, True
         self.reference = JointReference(position, self._settings.speed_limit)
+
+    def overdue(self, received: float, now: float) -> bool:
+        """Whether a setpoint of the time `received` has waited too long for the start, to be carried out at `now`."""
+        return not self.started and now - received > LONGEST_WAIT
 
     def solve(self, setpoint: Array) -> Answer:
         """The answer for a setpoint (3,) m; nothing moves by it yet."""

@@ -1,6 +1,7 @@
 """ik_node as its neighbours see it: setpoints in, references and verdicts out, over real rclpy."""
 
 import math
+import re
 import time
 
 import numpy as np
@@ -79,6 +80,22 @@ def test_a_setpoint_before_the_first_state_waits_and_says_so(start):
     bench.publishing = True
     wait_until(lambda: bench.results() == ["waiting", "reached"])
     assert bench.verdict(0)["sequence"] == bench.verdict(1)["sequence"] == "1"
+
+
+def test_a_setpoint_that_waits_too_long_for_a_state_is_refused_and_moves_nothing_later(start):
+    bench, node = start(publishing=False)
+    bench.send(FAR)
+    wait_until(lambda: bench.results() == ["waiting", "refused"])
+    assert bench.verdict()["sequence"] == "1"
+    assert re.fullmatch(
+        r"refused, waited \d+\.\d s for joint_states to start from", bench.verdicts[-1].message
+    )
+    bench.publishing = True
+    wait_until(lambda: node._raw_state is not None)
+    bench.send(NEAR)
+    wait_until(lambda: bench.results()[2:] == ["reached"])
+    wait_until(lambda: bench.references and np.linalg.norm(tip(bench.references[-1]) - NEAR) < 1e-6)
+    assert bench.results() == ["waiting", "refused", "reached"]
 
 
 @pytest.mark.parametrize("bad", [math.nan, math.inf, -math.inf, 1e308, 11.0])

@@ -6,7 +6,7 @@ import pytest
 from gaik_core import KinematicChain, LevenbergMarquardt
 from gaik_core.paths import Circle
 from gaik_ros.continuous_ik import ContinuousIk, Result
-from gaik_ros.setpoint_follower import LATCH, STREAM, FollowerSettings, SetpointFollower
+from gaik_ros.setpoint_follower import LATCH, LONGEST_WAIT, STREAM, FollowerSettings, SetpointFollower
 
 CHAIN = KinematicChain.load("touch_device")
 PERIOD, BEGIN = 0.01, 1000.0
@@ -95,6 +95,15 @@ def test_an_unreachable_setpoint_leads_to_the_nearest_point_and_stands():
     published = ticks(made, BEGIN + 5 * PERIOD, 1.0)
     np.testing.assert_allclose(CHAIN.forward(published[-1][1]), found.nearest, atol=1e-9)
     np.testing.assert_array_equal(published[-1][2], 0.0)
+
+
+def test_a_setpoint_waits_for_the_start_only_so_long():
+    ik = ContinuousIk(CHAIN, "quaternion", LevenbergMarquardt(), 1e-6, 1000)
+    made = SetpointFollower(ik, FollowerSettings(1.0), PERIOD)
+    assert not made.overdue(BEGIN, BEGIN + 0.9 * LONGEST_WAIT)
+    assert made.overdue(BEGIN, BEGIN + 1.1 * LONGEST_WAIT)
+    made.start(CHAIN.home.copy(), BEGIN)
+    assert not made.overdue(BEGIN, BEGIN + 100.0)  # it waits for nothing any more
 
 
 def test_a_bad_change_leaves_everything_as_it_was():
