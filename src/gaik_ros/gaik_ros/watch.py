@@ -7,17 +7,31 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Any
 
 from rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
 from rclpy.node import Node
 from rclpy.publisher import Publisher
-from rclpy.qos import QoSProfile, qos_policy_name_from_kind
+from rclpy.qos import QoSCompatibility, QoSProfile, qos_check_compatible, qos_policy_name_from_kind
 from rclpy.subscription import Subscription
+from rclpy.topic_endpoint_info import TopicEndpointInfo
 
 from gaik_ros.health import OK, WARN, Health, worst
 
 WARN_EVERY = 5.0  # s
+
+
+@dataclass
+class _Misfit:
+    """Publishers or subscriptions of others on a topic whose QoS does not fit ours."""
+
+    policy: str
+    unseen: int = 0  # how many times in a row the graph has not shown it
+
+
+def _misfit(offered: QoSProfile, asked: QoSProfile) -> bool:
+    return bool(qos_check_compatible(offered, asked)[0] == QoSCompatibility.ERROR)
 
 
 class Watch:
@@ -27,7 +41,7 @@ class Watch:
         self._node = node
         self._command_topics: list[str] = []
         self._rivals: set[str] = set()
-        self._mismatched: dict[str, str] = {}
+        self._misfits: dict[tuple[str, str], _Misfit] = {}
         self._last_warning: dict[str, float] = {}
         self._unsaid: dict[str, int] = {}
         self.refused: dict[str, int] = {}
@@ -80,16 +94,41 @@ class Watch:
 
     def _mismatch(self, topic: str, other: str, event: Any) -> None:
         policy = qos_policy_name_from_kind(event.last_policy_kind)
-        if topic not in self._mismatched:
+        if (topic, other) not in self._misfits:
             self._node.get_logger().warning(
                 f"a {other} on {topic} has another {policy} than ours: no message will pass"
             )
-        self._mismatched[topic] = str(policy)
+        self._misfits[topic, other] = _Misfit(str(policy))
+
+    def _forget_gone(self) -> None:
+        """Drop the misfits that are not to be seen any more; the graph is asked only where there is one."""
+        for (topic, other), misfit in list(self._misfits.items()):
+            misfit.unseen = 0 if self._seen(topic, other) else misfit.unseen + 1
+            if misfit.unseen > 1:  # the first time the graph may not yet show what was just told of
+                del self._misfits[topic, other]
+
+    def _seen(self, topic: str, other: str) -> bool:
+        """Whether some `other` on `topic` does not fit ours, as the graph has both."""
+        offers = self._node.get_publishers_info_by_topic(topic)
+        requests = self._node.get_subscriptions_info_by_topic(topic)
+        if other == "publisher":
+            requests = [info for info in requests if self._is_ours(info)]
+        else:
+            offers = [info for info in offers if self._is_ours(info)]
+        return any(
+            _misfit(offer.qos_profile, request.qos_profile) for offer in offers for request in requests
+        )
+
+    def _is_ours(self, info: TopicEndpointInfo) -> bool:
+        node = self._node
+        return bool(info.node_name == node.get_name() and info.node_namespace == node.get_namespace())
 
     def health(self) -> Health:
         """Rival publishers and mismatched QoS; to be called once a second."""
+        self._forget_gone()
         findings = [
-            (WARN, f"a {policy} on {topic} does not fit") for topic, policy in self._mismatched.items()
+            (WARN, f"a {misfit.policy} on {topic} does not fit")
+            for (topic, _), misfit in self._misfits.items()
         ]
         for topic in self._command_topics:
             count = self._node.count_publishers(topic)
