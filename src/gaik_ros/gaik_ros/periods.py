@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -40,18 +41,16 @@ class TimeWindow:
     """Collects times in s until they are taken; the newest `capacity` are kept."""
 
     def __init__(self, capacity: int = 10_000) -> None:
-        self._capacity = capacity
-        self._times: list[float] = []
+        self._times: deque[float] = deque(maxlen=capacity)
 
     def add(self, seconds: float) -> None:
-        """Remember one time."""
-        if len(self._times) < self._capacity:
-            self._times.append(seconds)
+        """Remember one time, and forget the oldest where there are too many."""
+        self._times.append(seconds)
 
     def take(self) -> list[float]:
         """The times since the last take. May be called from another thread than `add`."""
-        times, self._times = self._times, []
-        return times
+        times, self._times = self._times, deque(maxlen=self._times.maxlen)
+        return list(times)
 
 
 class PeriodWindow:
