@@ -1,4 +1,4 @@
-"""The verdict on a setpoint as a DiagnosticStatus: see DESIGN for its keys."""
+"""The verdict on a setpoint as a DiagnosticStatus; `verdict_message` lists its keys."""
 
 from __future__ import annotations
 

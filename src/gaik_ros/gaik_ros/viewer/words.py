@@ -25,7 +25,7 @@ NOTHING_YET = Words("No setpoint yet", "Drag the ball, or start a path.", True)
 def verdict_in_words(values: Mapping[str, str], message: str = "") -> Words:
     """The words for a verdict, from the keys and values of `~/status` and its message.
 
-    A verdict of another make, without the keys that DESIGN lists, is given as its message.
+    A verdict of another make, without the keys that gaik_ros.verdict writes, is given as its message.
     """
     try:
         return _words(Result(values["result"]), values, message)
