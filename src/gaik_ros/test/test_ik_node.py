@@ -60,8 +60,8 @@ def test_one_setpoint_goes_all_the_way_under_the_speed_limit_and_the_reference_g
     positions = np.array([m.position for m in bench.references])
     stamps = np.array([seconds(m) for m in bench.references])
     steps = np.abs(np.diff(positions, axis=0)).max(axis=1)
-    # The stamp is taken a moment after the reference is advanced.
-    assert (steps <= 1.0 * np.diff(stamps) + 2e-3).all()
+    # The stamp is taken a moment after the reference is advanced: a thread may be held up between the two.
+    assert (np.cumsum(steps) <= 1.0 * (stamps[1:] - stamps[0]) + 0.05).all()
     assert steps.max() <= 1.0 * 0.02 + 1e-9  # two periods at most, whatever stalls
     assert np.abs(positions[0] - bench.angles).max() < 0.05
     assert all(tuple(m.name) == NAMES for m in bench.references)

@@ -168,7 +168,7 @@ def test_a_device_that_is_at_work_is_left_alone(tmp_path):
 
 
 def test_two_demos_at_once_do_not_share_a_device(tmp_path):
-    command = [*DEMO, "--path", "circle", "--period", "3", "--namespace", "shared"]
+    command = [*DEMO, "--path", "circle", "--period", "6", "--namespace", "shared"]
     both = [
         subprocess.Popen(
             [*command, "--out", str(tmp_path / name)],

@@ -119,8 +119,6 @@ class Conductor:
 
     def follow(self, name: str, laps: int) -> Recording:
         """Go to the first point of a path, rest there, follow the path and return what was recorded of it."""
-        if reason := other_suite(self._suite.trajectory, own=1):  # one that began when this one did
-            raise DemoError(reason)
         options, path = self._suite.options, path_by_name(name)
         count = round(laps * options.period * options.setpoint_rate)
         self._approach(name, path.position(0.0))
@@ -130,6 +128,7 @@ class Conductor:
         _call(self._start, Trigger.Request())
         end = time.monotonic() + laps * options.period + PATIENCE
         while (sent := self.recorder.count("setpoint")) <= count:
+            self._make_sure_of_being_alone()
             if time.monotonic() > end:
                 raise DemoError(f"{sent} of {count} setpoints came while the {name} was followed")
             self._progress.advance(sent)
@@ -150,12 +149,18 @@ class Conductor:
             self._configure(path="points", file=str(file), loop=False)
         _call(self._start, Trigger.Request())
         where = f"the first point of the {name}, {np.round(first, 4).tolist()} m"
-        _wait(lambda: self._distance(first) < ARRIVED, f"the tip does not come to {where}")
+        _wait(lambda: self._arrived(first), f"the tip does not come to {where}")
         time.sleep(SETTLE)
 
-    def _distance(self, point: np.ndarray) -> float:
+    def _make_sure_of_being_alone(self) -> None:
+        """DemoError: another suite, which began when this one did, drives the same device."""
+        if reason := other_suite(self._suite.trajectory, own=1):
+            raise DemoError(reason)
+
+    def _arrived(self, point: np.ndarray) -> bool:
+        self._make_sure_of_being_alone()
         tip = self.recorder.tip_now()
-        return np.inf if tip is None else float(np.linalg.norm(tip - point))
+        return tip is not None and bool(np.linalg.norm(tip - point) < ARRIVED)
 
     def _configure(self, **parameters: bool | str) -> None:
         request = SetParametersAtomically.Request(
