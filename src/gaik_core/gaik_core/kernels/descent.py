@@ -154,7 +154,8 @@ def descend(
     previous, nearest, normal = free[:joints], free[joints : 2 * joints], free[2 * joints : 3 * joints]
     state = free[3 * joints :][: SLOTS * max(SLOTS, joints)].reshape((SLOTS, max(SLOTS, joints)))
     forget(state)
-    inside = limits.shape[1] == 0 or move_inside(axes, couplings, limits, held, angles)
+    limited = limits.shape[1] > 0
+    inside = not limited or move_inside(axes, couplings, limits, held, angles)
     copy(angles, nearest)
     ended = GOING if inside else LIMITED
     least, best, since, iterations = np.inf, np.inf, 0, 0
@@ -181,7 +182,8 @@ def descend(
         elif iterations >= max_iterations:
             ended = ITERATION_LIMIT
         else:
-            copy(angles, previous)
+            if limited:
+                copy(angles, previous)
             step(rule, angles, error, jacobian, state, settings)
             if all_finite(angles):
                 hold_limits(chain, previous, angles)
