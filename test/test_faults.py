@@ -6,26 +6,18 @@ counted in messages.
 
 import os
 import re
-import signal
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
-from rclpy.node import Node
-from rclpy.parameter import Parameter
-from spin_all_nodes import ros_context, suites, wait_until
+from spin_all_nodes import suites
 
 from gaik_core import KinematicChain
-from gaik_ros.faults.borrowed import changed
 from gaik_ros.faults.catalogue import FAULTS, fault_by_name
 from gaik_ros.faults.facts import admissible, posture
-from gaik_ros.faults.remote import Remote
 from gaik_ros.faults.report import lines
 from gaik_ros.faults.rig import rig
-from gaik_ros.parameters import Parameter as Row
-from gaik_ros.parameters import ParameterTable
-from gaik_ros.run import running
 from touch_sim.suite import SuiteOptions
 
 NIGHTLY = os.environ.get("GAIK_NIGHTLY") == "1"
@@ -122,64 +114,6 @@ def test_against_a_running_suite_it_plays_what_can_be_played():
     ):
         assert (done.returncode, done.stdout) == (2, "")  # before any is played
         assert re.search(reason, done.stderr)
-
-
-def test_a_fault_leaves_the_parameters_as_they_were():
-    with suites(SuiteOptions(namespace="kept", rate=200.0)) as (user,):
-        node = user.suite.controller
-        played = inject("good_parameters", "--namespace", "kept")
-        assert node.get_parameter("gains.waist.p").value is None
-        assert node.values["gains.waist.p"] is None
-        assert node.get_parameter("gains.p").value == 3.1
-    assert played.returncode == 0, played.stdout + played.stderr
-    assert not played.stderr
-
-
-def gains(suite):
-    return [suite.controller.values[name] for name in ("gains.p", "gains.d")]
-
-
-def clocks(suite):
-    nodes = (suite.twin, suite.controller, suite.ik)
-    return [node.get_parameter("use_sim_time").value for node in nodes]
-
-
-@pytest.mark.parametrize(
-    ("fault", "look", "during"),
-    [
-        ("enable_in_motion", lambda suite: suite.controller._control.enabled, False),
-        ("gains_under_load", gains, [1.0, 0.1]),
-        ("clock_steps", clocks, [True, True, True]),
-    ],
-)
-def test_a_fault_that_is_interrupted_leaves_the_suite_as_it_was(fault, look, during):
-    with suites(SuiteOptions(namespace="stopped", rate=200.0)) as (user,):
-        user.suite.ik.set_parameters([Parameter("use_sim_time", value=True)])
-        before = look(user.suite)
-        command = [sys.executable, "-m", "gaik_ros.faults.inject", fault, "--namespace", "stopped"]
-        with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as player:
-            try:
-                wait_until(lambda: look(user.suite) == during, f"{fault} does not begin")
-                player.send_signal(signal.SIGINT)
-                said = player.communicate(timeout=PATIENCE)
-            finally:
-                player.kill()
-        assert (player.returncode, *said) == (130, "", "")
-        assert look(user.suite) == before
-
-
-def test_a_node_that_does_not_take_its_parameters_back_is_told_of(capfd):
-    def only_up(values):
-        if values.level < node.values.level:
-            raise ValueError("the level goes up only")
-
-    with ros_context() as context:
-        node, asking = Node("one_way", context=context), Node("asking", context=context)
-        node.values = ParameterTable("one_way", (Row("level", 1.0, "", "a level"),)).declare(node, only_up)
-        with running([node, asking], context), changed(Remote(asking), "one_way", {"level": 2.0}) as answer:
-            assert answer == (True, "")
-    said = capfd.readouterr().err
-    assert "inject: one_way does not take back what it had (level: 1.0): the level goes up only\n" in said
 
 
 def test_it_does_not_fight_for_the_arm_with_who_sends_setpoints_already():

@@ -14,23 +14,19 @@ DRIVING = ("joint_states", "joint_command")
 """What a device and what drives it publish: one of each is enough."""
 
 
-def refuse_company(namespace: str) -> None:
-    """Raise ValueError where a device or a controller is at work in a namespace. Takes DISCOVERY; rclpy is running."""
-    lookout = Node("lookout", namespace=namespace)
-    try:
-        end = time.monotonic() + DISCOVERY
-        while time.monotonic() < end:
-            if reason := other_suite(lookout):
-                raise ValueError(reason)
-            time.sleep(LOOK)
-    finally:
-        lookout.destroy_node()
+def refuse_company(node: Node) -> None:
+    """Raise ValueError where another suite than that of `node`, which does not run yet, is at work. Takes DISCOVERY."""
+    end = time.monotonic() + DISCOVERY
+    while time.monotonic() < end:
+        if reason := other_suite(node):
+            raise ValueError(reason)
+        time.sleep(LOOK)
 
 
-def other_suite(node: Node, own: int = 0) -> str:
-    """Which of DRIVING has more publishers than `own`, as a line for the user; empty where none is seen."""
+def other_suite(node: Node) -> str:
+    """Which of DRIVING another suite than that of `node` publishes, as a line for the user; empty for none."""
     for topic in DRIVING:
-        if node.count_publishers(topic) > own:
+        if node.count_publishers(topic) > 1:
             where = node.get_namespace()
             return f"another node publishes {topic} in the namespace {where}: end it, or give another --namespace"
     return ""

@@ -16,6 +16,7 @@ from gaik_ros.last_word import say_last
 from gaik_ros.pid_controller import PidController
 from gaik_ros.run import running
 
+pytestmark = pytest.mark.slow
 SCRIPTS = Path(__file__).parents[1] / "scripts"
 PATIENCE = 60.0
 STATES = joint_state(NAMES, position=[0.1, 0.7, 0.8])

@@ -147,6 +147,7 @@ def test_a_wrong_option_is_one_line_and_exit_code_2(options, words, tmp_path):
     assert not done.stdout
 
 
+@pytest.mark.slow
 def test_a_device_that_is_at_work_is_left_alone(tmp_path):
     """Neither a suite that runs in the namespace nor a demo that began at the same time shares its device."""
     twin = subprocess.Popen(
@@ -167,6 +168,7 @@ def test_a_device_that_is_at_work_is_left_alone(tmp_path):
     )
 
 
+@pytest.mark.slow
 def test_two_demos_at_once_do_not_share_a_device(tmp_path):
     command = [*DEMO, "--path", "circle", "--period", "6", "--namespace", "shared"]
     both = [

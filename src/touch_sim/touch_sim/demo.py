@@ -54,7 +54,6 @@ def _demonstrate(options: argparse.Namespace, ros_arguments: list[str]) -> int:
     import rclpy
     from rclpy.signals import SignalHandlerOptions
 
-    from gaik_ros.others import refuse_company
     from gaik_ros.run import ROS_ARGUMENT_ERRORS, check_namespace, explained
     from touch_sim.demo_output import write, write_bag
     from touch_sim.demo_progress import progress_for
@@ -70,8 +69,7 @@ def _demonstrate(options: argparse.Namespace, ros_arguments: list[str]) -> int:
         check_parameters(ros_arguments, suite.parameters(()))
         options.out.mkdir(parents=True, exist_ok=True)
         rclpy.init(args=["demo", *ros_arguments], signal_handler_options=SignalHandlerOptions.NO)
-        refuse_company(suite.namespace)
-        results = run_demo(suite, paths, options.laps, progress_for(sys.stderr))
+        results = run_demo(suite, paths, options.laps, progress_for(sys.stderr), look_out=True)
     except DemoError as reason:
         return complain("demo", str(reason), FAILED)
     except (ValueError, OSError, *ROS_ARGUMENT_ERRORS) as reason:

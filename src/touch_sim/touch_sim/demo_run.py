@@ -20,7 +20,7 @@ from std_srvs.srv import Trigger
 
 from gaik_core import KinematicChain, LevenbergMarquardt, solve_path
 from gaik_core.paths import path_by_name
-from gaik_ros.others import other_suite
+from gaik_ros.others import other_suite, refuse_company
 from gaik_ros.recorder import Recorder
 from gaik_ros.recording import Recording
 from gaik_ros.run import running
@@ -65,11 +65,21 @@ class Results:
 
 
 def run_demo(
-    options: SuiteOptions, paths: Sequence[str], laps: int, progress: Progress, context: Context | None = None
+    options: SuiteOptions,
+    paths: Sequence[str],
+    laps: int,
+    progress: Progress,
+    context: Context | None = None,
+    look_out: bool = False,
 ) -> Results:
-    """Follow each of `paths` for `laps` laps. Raises ValueError for a bad option, DemoError where a run fails."""
+    """Follow each of `paths` for `laps` laps. Raises ValueError for a bad option, DemoError where a run fails.
+
+    With `look_out`, a ValueError too where another suite is at work in the namespace; to see that takes four seconds.
+    """
     _check_reach(options.robot, paths)
     suite = Suite(options, context)
+    if look_out:
+        refuse_company(suite.trajectory)
     for node in suite.nodes:
         node.get_logger().set_level(LoggingSeverity.WARN)  # what is going well, the progress says
     demo = Node("demo", context=context, namespace=options.namespace)
@@ -154,7 +164,7 @@ class Conductor:
 
     def _make_sure_of_being_alone(self) -> None:
         """DemoError: another suite, which began when this one did, drives the same device."""
-        if reason := other_suite(self._suite.trajectory, own=1):
+        if reason := other_suite(self._suite.trajectory):
             raise DemoError(reason)
 
     def _arrived(self, point: np.ndarray) -> bool:

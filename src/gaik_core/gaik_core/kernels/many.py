@@ -127,22 +127,22 @@ def walk_without_jumps(
 
     Where even of the smallest one is, the arm stays where it was, STAGNATED or UNREACHABLE.
     """
-    total = 0
+    tolerance, orientation_tolerance, weight, window, most = stop
+    halvings, jumped, total = 0, True, 0
     status, distance, turn = STAGNATED, np.inf, np.inf
-    for halvings in range(1, HALVINGS + 1):
+    while jumped and halvings <= HALVINGS:
+        halvings += 1
+        if halvings > HALVINGS:  # measure where the arm is, and stay there
+            most = 0
         copy(current, angles)
         jumped, status, iterations, distance, turn = walk(
-            algebra, chain, kind, begin, end, 2**halvings, stop, rule, settings, bound, angles, work
-        )
+            algebra, chain, kind, begin, end, 2**halvings if most > 0 else 1,
+            (tolerance, orientation_tolerance, weight, window, most), rule, settings, bound, angles, work,
+        )  # fmt: skip
         total += iterations
-        if not jumped:
-            return status, total, distance, turn
-    copy(current, angles)
-    stay = (stop[0], stop[1], stop[2], stop[3], 0)
-    _, _, _, distance, turn = walk(
-        algebra, chain, kind, begin, end, 1, stay, rule, settings, bound, angles, work
-    )
-    return status if status == UNREACHABLE else STAGNATED, total, distance, turn
+    if halvings > HALVINGS and status != UNREACHABLE:
+        status = STAGNATED
+    return status, total, distance, turn
 
 
 @inlined
