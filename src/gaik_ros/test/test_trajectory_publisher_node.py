@@ -146,6 +146,7 @@ def test_a_file_of_points_is_read_when_it_is_chosen_and_not_again(start, tmp_pat
     assert not bench.change("trajectory_publisher", path="points").successful
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("rate", [0.5, 2.0])
 def test_a_slow_path_is_not_called_stalled(start, rate):
     bench, node = start(rate=rate)

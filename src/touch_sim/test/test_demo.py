@@ -101,6 +101,7 @@ def test_the_figures_show_both_curves(simulated, tmp_path, count):
         assert black.sum() > 500
 
 
+@pytest.mark.slow
 def test_the_demo_follows_and_reports(tmp_path):
     done = subprocess.run(
         [*DEMO, "--path", "circle", "--period", "3", "--feed-forward", "--out", str(tmp_path)],
@@ -197,6 +198,7 @@ def test_a_missing_module_is_one_line_with_the_command_that_brings_it(module, tm
     assert "-m pip install" in line
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_an_interrupted_demo_ends_quietly(number, tmp_path):
     demo = subprocess.Popen(

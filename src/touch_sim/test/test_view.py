@@ -32,6 +32,7 @@ def end(process):
     return process.returncode, output, errors
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM], ids=["SIGINT", "SIGTERM"])
 def test_it_serves_its_page_and_ends_quietly(number):
     pytest.importorskip("viser", reason="no viser; install it with: pip install 'viser>=1.1,<2'")
