@@ -113,15 +113,9 @@ def solve_slice(problem: BatchProblem, result: BatchResult, part: slice) -> None
     if problem.fits_lanes:
         iterations, distances = result.counts[:, many.ITERATIONS], result.errors[:, many.DISTANCE]
         tolerance, _, _, window, budget = problem.stop
+        patience = min(window, budget)
         solve_lanes(
-            problem.algebra,
-            problem.chain,
-            targets,
-            tolerance,
-            min(window, budget),
-            *common,
-            distances,
-            iterations,
+            problem.algebra, problem.chain, targets, tolerance, patience, *common, distances, iterations
         )
         left = np.flatnonzero(iterations == LEFT_OVER)
     else:

@@ -56,7 +56,7 @@ class GradientDescent(UpdateRule):
     """θ ← θ + α Jᵀ e (eqs. 34 and 53).
 
     `learning_rate` is α in rad²/m² for the loss ½ |e|²; with "auto" each step is the best one of the linearised arm, so
-    that no α need be found per robot (Buss 2004).
+    that no α need be found per robot (Buss 2004); no joint moves further than π/4 in one.
     """
 
     learning_rate: float | Literal["auto"] = "auto"
@@ -151,7 +151,8 @@ class DampedLeastSquares(UpdateRule):
 class LevenbergMarquardt(UpdateRule):
     """Damped least squares whose damping fades with the loss: λ² = c ½ |e|² + b tr(J Jᵀ)/r (Sugihara 2011).
 
-    Far from the target it steps like gradient descent, by 1/√(2c) rad at most; near it, like Newton's method.
+    Far from the target it steps like gradient descent, by 1/√(2c) rad at most; near it, like Newton's method. Where the
+    loss grew the damping is raised, so that under a target out of reach the arm settles.
     `damping` is c: Sugihara's 1, or less; at 1/4 a Panda takes the fewest updates.
     """
 

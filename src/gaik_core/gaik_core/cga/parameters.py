@@ -71,14 +71,12 @@ def radius_squared(round_object: Multivector) -> Array:
 
     r² = -X X̂ / (einf ⌋ X)², X̂ the grade involution.
     """
-    weight = _weight_squared(round_object)
-    return -round_object.scalar_product(round_object.grade_involution()) / weight
+    return _radius_squared(round_object)[0]
 
 
 def radius(round_object: Multivector) -> Array:
     """The radius `(…)` of a sphere, circle or point pair (half the distance of its points)."""
-    squared = radius_squared(round_object)
-    rounding = ROUNDING * np.sum(round_object.components**2, axis=-1) / _weight_squared(round_object)
+    squared, rounding = _radius_squared(round_object)
     if np.any(squared < -rounding):
         raise GaikError(f"the object is imaginary: its squared radius is {np.min(squared):.6g}")
     return np.sqrt(np.maximum(squared, 0.0))
@@ -112,6 +110,13 @@ def flat_point_position(flat: Multivector) -> Array:
         raise GaikError("the flat point lies at infinity: it has no position")
     position: Array = -0.5 * (outer[..., _WITH_E4] + outer[..., _WITH_E5]) / weight
     return position
+
+
+def _radius_squared(round_object: Multivector) -> tuple[Array, Array]:
+    """The squared radius, and how far rounding may have moved it."""
+    weight = _weight_squared(round_object)
+    squared: Array = -round_object.scalar_product(round_object.grade_involution()) / weight
+    return squared, ROUNDING * np.sum(round_object.components**2, axis=-1) / weight
 
 
 def _weight_squared(round_object: Multivector) -> Array:

@@ -103,7 +103,7 @@ def suite(arguments: Namespace, chain: Any) -> Iterator[Replayer]:
     except ImportError as missing:
         raise _cannot(f"it needs ROS 2: {missing}") from None
     from gaik_ros.replayer import Replayer
-    from gaik_ros.run import ROS_ARGUMENT_ERRORS, check_namespace, running
+    from gaik_ros.run import ROS_ARGUMENT_ERRORS, check_namespace, explained, running
 
     namespace = arguments.live if arguments.live is not None else f"gaik_replay_{os.getpid()}"
     context = rclpy.Context()
@@ -119,7 +119,7 @@ def suite(arguments: Namespace, chain: Any) -> Iterator[Replayer]:
         with running([*nodes, node], context):
             yield replayer
     except ROS_ARGUMENT_ERRORS as reason:
-        raise _cannot(" ".join(str(reason).split())) from None
+        raise _cannot(explained(reason)) from None
     finally:
         rclpy.try_shutdown(context=context)
 
@@ -145,13 +145,15 @@ def twin(robot: str, namespace: str, context: Context, parameters: dict[str, dic
     """The nodes of the twin's suite. GaikError: the package that has it is not installed, or refuses an option."""
     from importlib.metadata import entry_points
 
+    from gaik_ros.run import explained
+
     points = entry_points(group=SUITES, name=TWIN)
     if not points:
         raise _cannot("the twin is in touch_sim, which is not installed; feed a running suite with --live")
     try:
         nodes: list[Node] = list(next(iter(points)).load()(robot, namespace, context, parameters))
     except ValueError as reason:
-        raise _cannot(" ".join(str(reason).split())) from None
+        raise _cannot(explained(reason)) from None
     names = [node.get_name() for node in nodes]
     for name in parameters:
         if name not in names:

@@ -17,7 +17,7 @@ from gaik_ros.faults.catalogue import FAULTS, fault_by_name
 from gaik_ros.faults.fault import Fault, Outcome, StageError
 from gaik_ros.faults.report import lines, listing, page
 from gaik_ros.faults.rig import rig
-from gaik_ros.run import ROS_ARGUMENT_ERRORS, check_namespace
+from gaik_ros.run import ROS_ARGUMENT_ERRORS, check_namespace, explained
 
 HELD, BROKEN, WRONG = 0, 1, 2
 
@@ -115,7 +115,7 @@ def main(args: Sequence[str] | None = None) -> int:
         )  # ends as Ctrl-C does: nothing is left running
         return _play(given, faults)
     except (StageError, ValueError, *ROS_ARGUMENT_ERRORS) as error:
-        print(f"inject: {' '.join(str(error).split())}", file=sys.stderr)
+        print(f"inject: {explained(error)}", file=sys.stderr)
         return WRONG
     except KeyboardInterrupt:
         return 128 + signal.SIGINT
