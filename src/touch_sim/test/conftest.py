@@ -2,6 +2,8 @@
 
 import os
 
-os.environ["ROS_DOMAIN_ID"] = str(1 + os.getpid() % 100)
+worker = os.environ.get("PYTEST_XDIST_WORKER")  # gw0, gw1, …: neighbours of one run, which must not meet
+number = os.getppid() + int(worker[2:]) if worker else os.getpid()
+os.environ["ROS_DOMAIN_ID"] = str(1 + number % 100)
 os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "LOCALHOST"
 os.environ["ROS_PYTHON_CHECK_FIELDS"] = "1"
