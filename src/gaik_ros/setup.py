@@ -38,14 +38,14 @@ setup(
     license="Apache-2.0",
     entry_points={
         "console_scripts": [
-            "ik_node = gaik_ros.ik_node:main",
-            "pid_controller = gaik_ros.pid_controller:main",
-            "trajectory_publisher = gaik_ros.trajectory_publisher:main",
-            "viewer = gaik_ros.viewer.node:main",
-            "record = gaik_ros.record:main",
-            "path_markers = gaik_ros.path_markers:main",
-            "touch_adapter = gaik_ros.touch_adapter:main",
-            "inject = gaik_ros.faults.inject:main",
+            "ik_node = gaik_ros.executables:ik_node",
+            "pid_controller = gaik_ros.executables:pid_controller",
+            "trajectory_publisher = gaik_ros.executables:trajectory_publisher",
+            "viewer = gaik_ros.executables:viewer",
+            "record = gaik_ros.executables:record",
+            "path_markers = gaik_ros.executables:path_markers",
+            "touch_adapter = gaik_ros.executables:touch_adapter",
+            "inject = gaik_ros.executables:inject",
         ],
         "gaik.commands": [
             "plot = gaik_ros.cli.plot:COMMAND",

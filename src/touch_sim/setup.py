@@ -37,7 +37,7 @@ setup(
     license="Apache-2.0",
     entry_points={
         "console_scripts": [
-            "touch_sim = touch_sim.touch_sim_node:main",
+            "touch_sim = touch_sim.executables:touch_sim",
             "demo = touch_sim.demo:main",
             "view = touch_sim.view:main",
         ],
