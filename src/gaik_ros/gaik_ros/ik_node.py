@@ -129,11 +129,9 @@ class IkNode(Node):
         self._watch = Watch(self)
         zero = np.zeros(self.chain.dof)
         self._message = joint_state(self._names, position=zero, velocity=zero)
-        self._publisher = self._watch.publisher(
-            JointState, "joint_reference", qos.JOINT_REFERENCE, command=True
-        )
+        self._publisher = self._watch.publisher(JointState, "joint_reference", qos.JOINT_REFERENCE, sole=True)
         self._status = self._watch.publisher(DiagnosticStatus, "~/status", qos.STATUS)
-        self._watch.subscription(Point, "setpoint", self._on_setpoint, qos.SETPOINT, command=True)
+        self._watch.subscription(Point, "setpoint", self._on_setpoint, qos.SETPOINT, sole=True)
         # Only the start of a motion needs the state, so a thousand a second are kept as bytes, not read.
         self._watch.subscription(
             JointState, "joint_states", self._on_state, qos.JOINT_STATES_SUBSCRIPTION, raw=True

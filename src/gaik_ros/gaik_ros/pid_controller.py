@@ -179,9 +179,9 @@ class PidController(Node):
     def _connect(self) -> None:
         self._watch = Watch(self)
         self._command = joint_state(self._names, effort=np.zeros(len(self._names)))
-        self._publisher = self._watch.publisher(JointState, "joint_command", qos.JOINT_COMMAND, command=True)
+        self._publisher = self._watch.publisher(JointState, "joint_command", qos.JOINT_COMMAND, sole=True)
         self._watch.subscription(
-            JointState, "joint_reference", self._on_reference, qos.JOINT_REFERENCE, command=True
+            JointState, "joint_reference", self._on_reference, qos.JOINT_REFERENCE, sole=True
         )
         self._watch.subscription(JointState, "joint_states", self._on_state, qos.JOINT_STATES_SUBSCRIPTION)
         self.create_service(SetBool, "~/enable", self._on_enable)

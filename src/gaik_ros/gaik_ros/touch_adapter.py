@@ -177,14 +177,14 @@ class TouchAdapter(Node):
     def _connect(self) -> None:
         values = self.values
         self._watch = Watch(self)
-        self._states = self._watch.publisher(JointState, "joint_states", qos.JOINT_STATES)
+        self._states = self._watch.publisher(JointState, "joint_states", qos.JOINT_STATES, sole=True)
         self._tips = self._watch.publisher(PointStamped, "tip", qos.TIP)
         self._commands = self._watch.publisher(
-            type(self._command), values.command_topic, DRIVER_COMMAND, command=True
+            type(self._command), values.command_topic, DRIVER_COMMAND, sole=True
         )
         self._watch.subscription(JointState, values.state_topic, self._on_state, DRIVER_STATE)
         self._watch.subscription(
-            JointState, "joint_command", self._on_command, qos.JOINT_COMMAND_SUBSCRIPTION, command=True
+            JointState, "joint_command", self._on_command, qos.JOINT_COMMAND_SUBSCRIPTION, sole=True
         )
 
     def _on_state(self, message: JointState) -> None:

@@ -90,7 +90,7 @@ class TrajectoryPublisher(Node):
         self._running = self.values.autostart
         self._sent = 0
         self._watch = Watch(self)
-        self._publisher = self._watch.publisher(Point, "setpoint", qos.SETPOINT, command=True)
+        self._publisher = self._watch.publisher(Point, "setpoint", qos.SETPOINT, sole=True)
         self.create_service(Trigger, "~/start", self._on_start)
         self.create_service(Trigger, "~/stop", self._on_stop)
         self.loop = DeadlineLoop(self.values.rate, self._tick)

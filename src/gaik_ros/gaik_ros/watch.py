@@ -39,20 +39,18 @@ class Watch:
 
     def __init__(self, node: Node) -> None:
         self._node = node
-        self._command_topics: list[str] = []
+        self._sole_topics: list[str] = []
         self._rivals: set[str] = set()
         self._misfits: dict[tuple[str, str], _Misfit] = {}
         self._last_warning: dict[str, float] = {}
         self._unsaid: dict[str, int] = {}
         self.refused: dict[str, int] = {}
 
-    def publisher(
-        self, message_type: type, topic: str, profile: QoSProfile, command: bool = False
-    ) -> Publisher:
-        """A publisher; where it is on a `command` topic, a second publisher there is warned about."""
+    def publisher(self, message_type: type, topic: str, profile: QoSProfile, sole: bool = False) -> Publisher:
+        """A publisher; where it should be the `sole` one on its topic, another there is warned about."""
         resolved = self._node.resolve_topic_name(topic)
-        if command:
-            self._command_topics.append(resolved)
+        if sole:
+            self._sole_topics.append(resolved)
         events = PublisherEventCallbacks(
             incompatible_qos=lambda event: self._mismatch(resolved, "subscription", event),
             use_default_callbacks=False,
@@ -65,13 +63,13 @@ class Watch:
         topic: str,
         callback: Callable[[Any], None],
         profile: QoSProfile,
-        command: bool = False,
+        sole: bool = False,
         raw: bool = False,
     ) -> Subscription:
-        """A subscription; where it is to a `command` topic, a second publisher there is warned about."""
+        """A subscription; where its topic should have a `sole` publisher, a second one is warned about."""
         resolved = self._node.resolve_topic_name(topic)
-        if command:
-            self._command_topics.append(resolved)
+        if sole:
+            self._sole_topics.append(resolved)
         events = SubscriptionEventCallbacks(
             incompatible_qos=lambda event: self._mismatch(resolved, "publisher", event),
             use_default_callbacks=False,
@@ -130,9 +128,11 @@ class Watch:
             (WARN, f"a {misfit.policy} on {topic} does not fit")
             for (topic, _), misfit in self._misfits.items()
         ]
-        for topic in self._command_topics:
+        for topic in self._sole_topics:
             count = self._node.count_publishers(topic)
-            if count > 1:
+            if count < 2:
+                self._rivals.discard(topic)
+            else:
                 findings.append((WARN, f"{count} publishers on {topic}"))
                 if topic not in self._rivals:
                     self._node.get_logger().warning(

@@ -7,6 +7,7 @@ import time
 import numpy as np
 import pytest
 import rclpy
+from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import PointStamped
 from rcl_interfaces.srv import SetParameters
 from rclpy.node import Node
@@ -165,6 +166,24 @@ def test_reset_puts_it_back_at_rest(make):
     heard = len(bench.states)
     wait_until(lambda: len(bench.states) > heard + 20)
     np.testing.assert_allclose(bench.positions(), START, atol=1e-15)
+
+
+def test_a_second_device_beside_it_is_warned_about_until_it_is_gone(make):
+    _, bench = make()
+    heard = []
+    bench.create_subscription(DiagnosticArray, "/diagnostics", heard.append, 10)
+
+    def topics():
+        """What the newest message of the twin says of its topics."""
+        reports = [status for message in heard for status in message.status]
+        told = [status for status in reports if status.name == "touch_sim: topics"]
+        return (told[-1].level, told[-1].message) if told else None
+
+    wait_until(lambda: topics() == (b"\x00", "ok"))
+    second = bench.create_publisher(JointState, "joint_states", 10)
+    wait_until(lambda: topics() == (b"\x01", "2 publishers on /joint_states"))
+    bench.destroy_publisher(second)
+    wait_until(lambda: topics() == (b"\x00", "ok"))
 
 
 def test_constants_change_in_motion_good_and_bad(make):

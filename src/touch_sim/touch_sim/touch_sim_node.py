@@ -98,10 +98,10 @@ class TouchSim(Node):
 
     def _connect(self) -> None:
         self._watch = Watch(self)
-        self._state_publisher = self._watch.publisher(JointState, "joint_states", qos.JOINT_STATES)
+        self._state_publisher = self._watch.publisher(JointState, "joint_states", qos.JOINT_STATES, sole=True)
         self._tip_publisher = self._watch.publisher(PointStamped, "tip", qos.TIP)
         self._watch.subscription(
-            JointState, "joint_command", self._on_command, qos.JOINT_COMMAND_SUBSCRIPTION, command=True
+            JointState, "joint_command", self._on_command, qos.JOINT_COMMAND_SUBSCRIPTION, sole=True
         )
         self.create_service(Trigger, "~/reset", self._on_reset)
 
