@@ -6,6 +6,7 @@ import math
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 from std_srvs.srv import Trigger
 
 from gaik_ros.conversions import joint_values
@@ -15,6 +16,7 @@ from gaik_ros.faults.measures import follows, largest_step
 from gaik_ros.faults.stage import ARRIVED, Array, Stage
 
 WOUND_UP = 0.03  # rad; an integral that was wound up holds the arm 0.1 off, and more, for seconds
+CLOSE_TO_LIMIT = 1e-9  # N·m
 SMALL_STEP = 0.5  # N·m between two commands; an effort that jumps does so by its limit of 1
 # A busy machine shall not be what is measured: no loss of state or reference, and full gains, however late it is.
 PATIENT = {"state_timeout": 10.0, "reference_timeout": 10.0}  # s
@@ -36,6 +38,7 @@ def _saturation(seconds: float, integral_gain: float | None) -> Any:
                 changed(stage.remote, "touch_sim", {"gain": HELD}),
             ):
                 _lead(stage, target)
+                stage.wait(lambda: _at_limit(stage, limit).any(), "the effort reaches its limit")
                 mark = stage.mark()
                 stage.sleep(seconds)
                 efforts = stage.since(mark).joints("joint_command", stage.names, "effort").values
@@ -43,9 +46,11 @@ def _saturation(seconds: float, integral_gain: float | None) -> Any:
             stage.sleep(2.0)
             recording = stage.since(mark)
         stage.remote.call(Trigger, "pid_controller/reset", Trigger.Request())
-        full = np.abs(efforts) >= limit - 1e-9
+        full = np.abs(efforts) >= limit - CLOSE_TO_LIMIT
+        share = full.sum(axis=0) / max(len(full), 1)
         # The other joints wind up rightly: they push against the hand within their limits.
-        held_fast = full.mean(axis=0) > 0.9
+        held_fast = share > 0.9
+        pushed = "" if held_fast.any() else f", {share.max():.0%} of {len(full)} commands at most"
         states = recording.joints("joint_states", stage.names)
         goal = recording.joints("joint_reference", stage.names).values[-1]
         beyond = (states.values - goal) * np.sign(goal - states.values[0])
@@ -53,7 +58,7 @@ def _saturation(seconds: float, integral_gain: float | None) -> Any:
         last = states.received > states.received[-1] - 1.0
         off = float(np.median(np.abs(states.values - goal)[last][:, held_fast], axis=0).max(initial=0.0))
         return [
-            Check("saturated", f"{held_fast.sum()} joints for {seconds:g} s", bool(held_fast.any())),
+            Check("saturated", f"{held_fast.sum()} joints for {seconds:g} s{pushed}", bool(held_fast.any())),
             Check(
                 "no windup",
                 f"{1e3 * off:.0f} mrad off a second after the release, overshoot {1e3 * overshoot:.0f} mrad",
@@ -62,6 +67,14 @@ def _saturation(seconds: float, integral_gain: float | None) -> Any:
         ]
 
     return play
+
+
+def _at_limit(stage: Stage, limit: Array) -> NDArray[np.bool_]:
+    """Which joints the newest command pushes at their limit: on a busy machine it follows a reference later."""
+    command = stage.probe.newest("joint_command")
+    if command is None:
+        return np.zeros(len(limit), dtype=np.bool_)
+    return np.abs(joint_values(command, stage.names, "effort")) >= limit - CLOSE_TO_LIMIT
 
 
 def _lead(stage: Stage, target: Array) -> None:
