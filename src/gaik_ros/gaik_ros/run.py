@@ -7,11 +7,9 @@ thread still spinning while the interpreter exits would abort the process.
 from __future__ import annotations
 
 import contextlib
-import signal
 import sys
 import threading
 from collections.abc import Callable, Iterator, Sequence
-from types import FrameType
 
 import rclpy
 from rclpy.context import Context
@@ -26,6 +24,7 @@ from rclpy.validate_namespace import validate_namespace
 
 from gaik_ros.deadline_loop import DeadlineLoop, LoopThread
 from gaik_ros.parameters import ParameterTable
+from gaik_ros.signals import stopped_by_signals
 
 WAKE = 0.1  # s: how often a spinning thread looks whether it should stop
 
@@ -190,23 +189,6 @@ def _spin(nodes: Sequence[Node], context: Context | None, request: StopRequest) 
         runner.spin()
     finally:
         runner.destroy()
-
-
-@contextlib.contextmanager
-def stopped_by_signals(stop: Callable[[], None]) -> Iterator[None]:
-    """Call `stop` on the first SIGINT or SIGTERM; a second one ends the process as usual."""
-
-    def handle(number: int, frame: FrameType | None) -> None:
-        signal.signal(signal.SIGINT, signal.SIG_DFL)
-        signal.signal(signal.SIGTERM, signal.SIG_DFL)
-        stop()
-
-    previous = {number: signal.signal(number, handle) for number in (signal.SIGINT, signal.SIGTERM)}
-    try:
-        yield
-    finally:
-        for number, handler in previous.items():
-            signal.signal(number, handler)
 
 
 def run(

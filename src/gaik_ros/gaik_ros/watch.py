@@ -128,17 +128,15 @@ class Watch:
             (WARN, f"a {misfit.policy} on {topic} does not fit")
             for (topic, _), misfit in self._misfits.items()
         ]
-        for topic in self._sole_topics:
-            count = self._node.count_publishers(topic)
-            if count < 2:
-                self._rivals.discard(topic)
-            else:
-                findings.append((WARN, f"{count} publishers on {topic}"))
-                if topic not in self._rivals:
-                    self._node.get_logger().warning(
-                        f"{count} publishers on {topic}: if both speak at once, the device is pulled to and fro"
-                    )
-                self._rivals.add(topic)
+        counts = {topic: self._node.count_publishers(topic) for topic in self._sole_topics}
+        rivals = {topic: count for topic, count in counts.items() if count > 1}
+        for topic, count in rivals.items():
+            findings.append((WARN, f"{count} publishers on {topic}"))
+            if topic not in self._rivals:
+                self._node.get_logger().warning(
+                    f"{count} publishers on {topic}: if both speak at once, the device is pulled to and fro"
+                )
+        self._rivals = set(rivals)
         level, message = worst(findings)
         figures = {f"refused_{what}": count for what, count in self.refused.items()}
         return Health(level if findings else OK, message, figures)

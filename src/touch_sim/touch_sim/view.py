@@ -60,8 +60,8 @@ def _view(options: argparse.Namespace, ros_arguments: list[str]) -> int:
         StopRequest,
         check_namespace,
         explained,
-        stopped_by_signals,
     )
+    from gaik_ros.signals import stopped_by_signals
 
     request = StopRequest()
     with stopped_by_signals(request.make):

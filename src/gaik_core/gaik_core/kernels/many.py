@@ -128,21 +128,21 @@ def walk_without_jumps(
     Where even of the smallest one is, the arm stays where it was, STAGNATED or UNREACHABLE.
     """
     tolerance, orientation_tolerance, weight, window, most = stop
-    halvings, jumped, total = 0, True, 0
-    status, distance, turn = STAGNATED, np.inf, np.inf
-    while jumped and halvings <= HALVINGS:
-        halvings += 1
-        if halvings > HALVINGS:  # measure where the arm is, and stay there
-            most = 0
+    total, status, distance, turn = 0, STAGNATED, np.inf, np.inf
+    # The last round makes no update: it measures where the arm stays. A second call of `walk` for that would be
+    # compiled anew, and take seconds.
+    for halvings in range(1, HALVINGS + 2):
+        stays = halvings > HALVINGS
         copy(current, angles)
         jumped, status, iterations, distance, turn = walk(
-            algebra, chain, kind, begin, end, 2**halvings if most > 0 else 1,
-            (tolerance, orientation_tolerance, weight, window, most), rule, settings, bound, angles, work,
+            algebra, chain, kind, begin, end, 1 if stays else 2**halvings,
+            (tolerance, orientation_tolerance, weight, window, 0 if stays else most),
+            rule, settings, bound, angles, work,
         )  # fmt: skip
         total += iterations
-    if halvings > HALVINGS and status != UNREACHABLE:
-        status = STAGNATED
-    return status, total, distance, turn
+        if not (jumped or stays):
+            return status, total, distance, turn
+    return status if status == UNREACHABLE else STAGNATED, total, distance, turn
 
 
 @inlined

@@ -12,11 +12,11 @@ from std_srvs.srv import Trigger
 from gaik_ros.conversions import joint_values
 from gaik_ros.faults.borrowed import changed, disabled
 from gaik_ros.faults.fault import Check, Fault, Need
+from gaik_ros.faults.invariants import ROUNDING
 from gaik_ros.faults.measures import follows, largest_step
 from gaik_ros.faults.stage import ARRIVED, Array, Stage
 
 WOUND_UP = 0.03  # rad; an integral that was wound up holds the arm 0.1 off, and more, for seconds
-CLOSE_TO_LIMIT = 1e-9  # N·m
 SMALL_STEP = 0.5  # N·m between two commands; an effort that jumps does so by its limit of 1
 # A busy machine shall not be what is measured: no loss of state or reference, and full gains, however late it is.
 PATIENT = {"state_timeout": 10.0, "reference_timeout": 10.0}  # s
@@ -38,7 +38,7 @@ def _saturation(seconds: float, integral_gain: float | None) -> Any:
                 changed(stage.remote, "touch_sim", {"gain": HELD}),
             ):
                 _lead(stage, target)
-                stage.wait(lambda: _at_limit(stage, limit).any(), "the effort reaches its limit")
+                _wait_for_push(stage)
                 mark = stage.mark()
                 stage.sleep(seconds)
                 efforts = stage.since(mark).joints("joint_command", stage.names, "effort").values
@@ -46,7 +46,7 @@ def _saturation(seconds: float, integral_gain: float | None) -> Any:
             stage.sleep(2.0)
             recording = stage.since(mark)
         stage.remote.call(Trigger, "pid_controller/reset", Trigger.Request())
-        full = np.abs(efforts) >= limit - CLOSE_TO_LIMIT
+        full = _at_limit(efforts, limit)
         share = full.sum(axis=0) / max(len(full), 1)
         # The other joints wind up rightly: they push against the hand within their limits.
         held_fast = share > 0.9
@@ -69,12 +69,21 @@ def _saturation(seconds: float, integral_gain: float | None) -> Any:
     return play
 
 
-def _at_limit(stage: Stage, limit: Array) -> NDArray[np.bool_]:
-    """Which joints the newest command pushes at their limit: on a busy machine it follows a reference later."""
-    command = stage.probe.newest("joint_command")
-    if command is None:
-        return np.zeros(len(limit), dtype=np.bool_)
-    return np.abs(joint_values(command, stage.names, "effort")) >= limit - CLOSE_TO_LIMIT
+def _at_limit(efforts: Array, limit: Array) -> NDArray[np.bool_]:
+    """Which of `efforts` (…, dof) N·m stand at their limit."""
+    return np.abs(efforts) >= limit - ROUNDING
+
+
+def _wait_for_push(stage: Stage) -> None:
+    """Wait until a joint's effort stands at its limit: where the controller follows late, after the reference does."""
+
+    def pushes() -> bool:
+        command = stage.probe.newest("joint_command")
+        if command is None:
+            return False
+        return bool(_at_limit(joint_values(command, stage.names, "effort"), stage.facts.effort_max).any())
+
+    stage.wait(pushes, "the effort reaches its limit")
 
 
 def _lead(stage: Stage, target: Array) -> None:

@@ -18,6 +18,7 @@ from gaik_ros.faults.fault import Fault, Outcome, StageError
 from gaik_ros.faults.report import lines, listing, page
 from gaik_ros.faults.rig import rig
 from gaik_ros.run import ROS_ARGUMENT_ERRORS, check_namespace, explained
+from gaik_ros.signals import INTERRUPTED
 
 HELD, BROKEN, WRONG = 0, 1, 2
 
@@ -118,7 +119,7 @@ def main(args: Sequence[str] | None = None) -> int:
         print(f"inject: {explained(error)}", file=sys.stderr)
         return WRONG
     except KeyboardInterrupt:
-        return 128 + signal.SIGINT
+        return INTERRUPTED
 
 
 if __name__ == "__main__":
