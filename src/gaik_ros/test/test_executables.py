@@ -50,12 +50,13 @@ def test_a_signal_ends_a_node_quietly(up, node, arguments, number):
     assert end(process) == (0, "", "")
 
 
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM], ids=["SIGINT", "SIGTERM"])
 @pytest.mark.parametrize("module", ["numpy", "rclpy", "gaik_ros.run"])
-def test_ctrl_c_while_a_node_imports_ends_it_quietly(module):
+def test_a_signal_while_a_node_imports_ends_it_quietly(module, number):
     process = start("ik_node", interpreter=["-X", "importtime"])
     imported = re.compile(rf"import time:.*\| +{re.escape(module)}\n")
     assert any(imported.fullmatch(line) for line in process.stderr), module
-    process.send_signal(signal.SIGINT)
+    process.send_signal(number)
     code, output, errors = end(process)
     said = [line for line in errors.splitlines() if not line.startswith("import time:")]
     assert (code, output, said) == (0, "", [])
